@@ -204,38 +204,52 @@ bool EnergyBound::is_far_aside(std::size_t module) const {
   return spreads_ && way_energy(module) > kSpreadShare * norm_max * norm_max;
 }
 
-/// Hands a module's load on to supports through all modules near its way. False if that cannot be.
+/// What a module's beams put on its neighbours, which are not fixed, goes on to supports through
+/// all modules near its way. False if that cannot be.
 bool EnergyBound::spread(std::size_t from) {
   std::vector<std::size_t> way = {from};
   while (!has_root(way.back())) {
     way.push_back(base::at(nodes_[way.back()].ways.front().to));
   }
-  const auto entry = spread_.find(way, local_);
-  if (!entry) {
+  std::vector<LoadSpread::Load> loads;
+  std::vector<int> own;
+  for (const base::Direction direction : base::directions(target_.lattice())) {
+    const std::int32_t other = local_.neighbour(from, base::index(direction));
+    if (other == model::Robot::kNoNeighbour) {
+      continue;
+    }
+    own.push_back(base::index(direction));
+    if (target_.modules()[base::at(other)].support != model::Support::kFixed) {
+      LoadSpread::Load& load = loads.emplace_back(LoadSpread::Load{.module = base::at(other)});
+      base::add_times(load.force, -1,
+                      beam_.end_force(base::opposite(direction), u_[load.module], u_[from]));
+    }
+  }
+  const std::vector<LoadSpread::Share> shares = spread_.spread(way, loads, local_);
+  if (shares.empty()) {
     return false;
   }
-  const Vec load = load_about_origin(target_, from, changes_.place(from));
-  const std::vector<Vec> u =
-      spread_.displacement(*entry, force_at(load, changes_.place(way[entry->on_way])));
-  if (u.empty()) {
-    return false;
+  for (const int direction : own) {
+    const std::int32_t other = local_.neighbour(from, direction);
+    changes_.bear(from, direction, u_[from], u_[base::at(other)]);
   }
-  for (std::size_t i = 0; i < entry->on_way; ++i) {
-    changes_.hand_on(way[i], nodes_[way[i]].ways.front().direction, load);
+  std::ranges::for_each(shares, [&](const LoadSpread::Share& share) { bear(share); });
+  return true;
+}
+
+void EnergyBound::bear(const LoadSpread::Share& share) {
+  const std::vector<std::size_t>& modules = share.part->modules;
+  for (const SpreadPart::Beam& beam : share.part->beams) {
+    changes_.bear(modules[base::at(beam.a)], base::index(beam.direction), share.u[base::at(beam.a)],
+                  beam.b < 0 ? Vec{} : share.u[base::at(beam.b)]);
   }
-  const LoadSpread::Part& part = *entry->part;
-  for (const auto& [a, b, direction] : part.beams) {
-    changes_.bear(part.modules[base::at(a)], base::index(direction), u[base::at(a)],
-                  b < 0 ? Vec{} : u[base::at(b)]);
-  }
-  for (std::size_t i = 0; i < part.modules.size(); ++i) {
-    const std::size_t module = part.modules[i];
-    for (std::size_t facet = first_facet_[module]; facet < first_facet_[module + 1]; ++facet) {
-      changes_.bear(facet, trial_force(target_.facets()[facet], u[i]));
+  for (std::size_t i = 0; i < modules.size(); ++i) {
+    for (std::size_t facet = first_facet_[modules[i]]; facet < first_facet_[modules[i] + 1];
+         ++facet) {
+      changes_.bear(facet, trial_force(target_.facets()[facet], share.u[i]));
       look_at_facet(facet);
     }
   }
-  return true;
 }
 
 /// Hands a module's load on to supports: through all ways down at once, which meet again below
@@ -675,13 +689,36 @@ void EnergyBound::bear_by_section() {
   section_ratio_ = section_->load_ratio(resultant_);  // A beam may bear both.
 }
 
+/// The largest load ratio of (s + h w) / 2 in any beam where these have changed, but for cuts, if
+/// the displacements of the solved robot are exact.
+double EnergyBound::changed_ratio() const {
+  double largest = 0;
+  changes_.for_each_beam([&](std::size_t module, int direction, Vec half) {
+    const std::size_t other = base::at(target_.connected()[module][base::at(direction)]);
+    if (cuts_.contains(module, other)) {
+      return;
+    }
+    if (!nodes_[module].is_new && !nodes_[other].is_new) {
+      base::add_to(
+          half, beam_.middle_force(static_cast<base::Direction>(direction), u_[module], u_[other]));
+    }
+    if (ratio_per_norm_ * ratio_per_norm_ * changes_.energy_of(half) > largest * largest) {
+      largest = std::max(largest, connection_ratio(target_, module, other, direction, half));
+    }
+  });
+  return largest;
+}
+
 /// That of the largest load ratio, if every facet is pressed all over.
 std::optional<double> EnergyBound::bound() {
   const double radius = energy_error() / 2;
+  const double off = ratio_per_norm_ * radius;
   const double others = std::max(solved_ratio_, cuts_.released_ratio());
-  const double ratio =
-      std::max(others + changes_.load_ratio() + section_ratio_ + ratio_per_norm_ * radius,
-               cuts_.load_ratio() * (1 + kRoundingOfStatics));
+  double ratio = others + changes_.load_ratio() + section_ratio_ + off;
+  if (!(ratio < kRatioMax) && section_ == nullptr && others + off < kRatioMax) {
+    ratio = std::max(others, changed_ratio() + ratio_per_norm_ * solved_error_) + off;
+  }
+  ratio = std::max(ratio, cuts_.load_ratio() * (1 + kRoundingOfStatics));
   if (!(ratio < kRatioMax) || !are_pressed(radius + solved_error_ / 2)) {
     return std::nullopt;
   }

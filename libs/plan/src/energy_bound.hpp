@@ -39,8 +39,12 @@ namespace holdfast::plan {
 /// and what a facet lacks to tilting is off by sqrt(h_m + h_f b^2) |s - h w| / 2 at most, b being
 /// half its width. If nothing breaks by that and every facet presses all over, then that is the
 /// equilibrium of the paper's law, with all facets stuck. Each module costs the length of its way
-/// down. Where that way leads far aside, so that its beams bend, the load goes down through all
-/// modules near it instead (LoadSpread), which costs a tenth to a fortieth.
+/// down. Where that way leads far aside, so that its beams bend, s is h w in the module's own
+/// beams, and what these put on its neighbours goes down through all modules near instead
+/// (LoadSpread).
+///
+/// Where c(solved) + c(change of s) / 2 is too much c((s + h w) / 2) is found itself, of every beam
+/// in which s or h w has changed.
 ///
 /// Facets for which that is too coarse are looked at by what is known of them from the modules
 /// around (LocalAdjoint) or, where somebody has found it, from the whole robot (FacetAdjoint).
@@ -128,6 +132,7 @@ class EnergyBound {
   void forget_nearby(const std::vector<Element>& elements);
   void forget_nearby(const std::vector<bool>& is_changed);
   std::optional<double> bound();
+  double changed_ratio() const;
   bool has_root(std::size_t module) const;
   double lean(std::size_t module, std::size_t neighbour) const;
   void hang(std::size_t module);
@@ -136,6 +141,7 @@ class EnergyBound {
   double way_energy(std::size_t from) const;
   bool is_far_aside(std::size_t module) const;
   bool spread(std::size_t from);
+  void bear(const LoadSpread::Share& share);
   void carry(std::size_t from);
   std::size_t nearest_way(const Node& node, const Vec& place) const;
   std::optional<double> add_above_section(std::size_t module);

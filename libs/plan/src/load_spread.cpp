@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
-#include <utility>
+#include <memory>
 
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/model/facet_starts.hpp"
@@ -21,9 +22,8 @@ using base::Vec6;
 /// So many steps away from the way modules take a part of the load.
 constexpr int kReach = 2;
 
-/// After so many modules of a way at most it comes to a known part, and so many are known.
-constexpr std::size_t kDetourMax = 4;
-constexpr std::size_t kPartCountMax = 32;
+/// So many steps away at most a part that is known is near.
+constexpr int kDetourMax = 4;
 
 /// What is solved at most.
 constexpr std::size_t kPartSizeMax = 1000;
@@ -38,7 +38,9 @@ LoadSpread::LoadSpread(const model::Robot& target, std::size_t width_min)
       width_min_(width_min),
       beam_(model::beam_section(target.material()), target.lattice()),
       first_facet_(model::facet_starts(target)),
-      place_(target.modules().size(), kAbsent) {
+      place_(target.modules().size(), kAbsent),
+      below_(target.modules().size(), kAbsent),
+      known_(target.modules().size()) {
   for (const Direction direction : base::directions(target.lattice())) {
     k11_[at(base::index(direction))] = beam_.block_11(direction);
     k12_[at(base::index(direction))] = beam_.block_12(direction);
@@ -49,38 +51,70 @@ bool LoadSpread::is_fixed(std::size_t module) const {
   return target_->modules()[module].support == model::Support::kFixed;
 }
 
-/// Those between them, each once, and to fixed modules.
-std::vector<LoadSpread::Part::Beam> LoadSpread::beams(const std::vector<std::size_t>& modules,
-                                                      const LocalBalance& there) const {
-  std::vector<Part::Beam> beams;
-  for (std::size_t i = 0; i < modules.size(); ++i) {
+/// Gives places to the way's modules first, and to those about it step by step; not to modules that
+/// are fixed or of the part below. Returns how many are less than `reach` steps away.
+std::size_t LoadSpread::gather(std::span<const std::size_t> way, int reach,
+                               const LocalBalance& there, std::vector<std::size_t>& modules) {
+  const auto take = [&](std::size_t module) {
+    const bool is_new = place_[module] == kAbsent && below_[module] == kAbsent && !is_fixed(module);
+    if (is_new) {
+      place_[module] = static_cast<std::int32_t>(modules.size());
+      modules.push_back(module);
+    }
+    return is_new;
+  };
+  std::ranges::for_each(way, take);
+  std::vector<std::size_t> from;
+  std::ranges::copy_if(way, std::back_inserter(from),
+                       [&](std::size_t module) { return !is_fixed(module); });
+  std::vector<std::size_t> next;
+  std::size_t inner_count = 0;
+  for (int step = 0; step < reach; ++step, std::swap(from, next)) {
+    inner_count = modules.size();
+    next.clear();
+    for (const std::size_t module : from) {
+      for (const Direction direction : base::directions(target_->lattice())) {
+        const std::int32_t other = there.neighbour(module, base::index(direction));
+        if (other != model::Robot::kNoNeighbour && take(at(other))) {
+          next.push_back(at(other));
+        }
+      }
+    }
+  }
+  return inner_count;
+}
+
+/// Those between modules that have a place, each once, and to modules that stand still.
+void LoadSpread::find_beams(Part& part, const LocalBalance& there) const {
+  for (std::size_t i = 0; i < part.modules.size(); ++i) {
     const auto here = static_cast<std::int32_t>(i);
     for (const Direction direction : base::directions(target_->lattice())) {
-      const std::int32_t other = there.neighbour(modules[i], base::index(direction));
+      const std::int32_t other = there.neighbour(part.modules[i], base::index(direction));
       if (other == model::Robot::kNoNeighbour) {
         continue;
       }
       const std::int32_t place = place_[at(other)];
-      if (place > here || (place == kAbsent && is_fixed(at(other)))) {
-        beams.push_back({.a = here, .b = place, .direction = direction});
+      const std::int32_t below = below_[at(other)];
+      if (place > here || (place == kAbsent && (below != kAbsent || is_fixed(at(other))))) {
+        part.beams.push_back({.a = here, .b = place, .direction = direction, .below = below});
       }
     }
   }
-  return beams;
 }
 
-/// The equations of all beams and facets; none if something hangs free.
-std::optional<solver::BlockLu> LoadSpread::factored(const std::vector<std::size_t>& modules,
-                                                    const std::vector<Part::Beam>& beams) const {
+/// The equations of all beams and facets; false if something hangs free.
+bool LoadSpread::factor(Part& part) const {
+  const std::vector<std::size_t>& modules = part.modules;
   std::vector<base::Mat6<double>> diagonal(modules.size());
   std::vector<solver::Edge> edges;
   std::vector<const base::Mat6<double>*> coupling;
-  for (const auto& [a, b, direction] : beams) {
-    base::add_to(diagonal[at(a)], k11_[at(base::index(direction))]);
-    if (b >= 0) {
-      base::add_to(diagonal[at(b)], k11_[at(base::index(base::opposite(direction)))]);
-      edges.push_back({a, b});
-      coupling.push_back(&k12_[at(base::index(direction))]);
+  for (const Part::Beam& beam : part.beams) {
+    const auto index = at(base::index(beam.direction));
+    base::add_to(diagonal[at(beam.a)], k11_[index]);
+    if (beam.b >= 0) {
+      base::add_to(diagonal[at(beam.b)], k11_[at(base::index(base::opposite(beam.direction)))]);
+      edges.push_back({beam.a, beam.b});
+      coupling.push_back(&k12_[index]);
     }
   }
   for (std::size_t i = 0; i < modules.size(); ++i) {
@@ -88,86 +122,79 @@ std::optional<solver::BlockLu> LoadSpread::factored(const std::vector<std::size_
       base::add_to(diagonal[i], beam_.block_11(target_->facets()[k].direction));
     }
   }
-  solver::BlockLu factor(modules.size(), edges, std::numeric_limits<std::size_t>::max(),
-                         solver::Symmetry::kSymmetric);
+  part.factor = solver::BlockLu(modules.size(), edges, std::numeric_limits<std::size_t>::max(),
+                                solver::Symmetry::kSymmetric);
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    factor.set_edge(i, *coupling[i]);
+    part.factor.set_edge(i, *coupling[i]);
   }
   for (std::size_t i = 0; i < modules.size(); ++i) {
-    factor.set_diagonal(i, diagonal[i]);
+    part.factor.set_diagonal(i, diagonal[i]);
   }
-  return factor.factor() ? std::optional(std::move(factor)) : std::nullopt;
+  return part.factor.factor();
 }
 
-/// The way's modules first, and so on step by step; modules that are fixed are not among them.
-std::optional<LoadSpread::Part> LoadSpread::make(std::span<const std::size_t> way,
-                                                 const LocalBalance& there) {
-  std::vector<std::size_t> modules;
-  const auto take = [&](std::size_t module) {
-    if (place_[module] == kAbsent && !is_fixed(module)) {
-      place_[module] = static_cast<std::int32_t>(modules.size());
-      modules.push_back(module);
-    }
-  };
-  std::ranges::for_each(way, take);
+void LoadSpread::forget_places(const std::vector<std::size_t>& modules) {
+  for (const std::size_t module : modules) {
+    place_[module] = kAbsent;
+  }
+}
+
+/// All modules that are there near a way; none if that is not worth while.
+SpreadParts::Part LoadSpread::make(std::span<const std::size_t> way, const LocalBalance& there) {
+  const auto part = std::make_shared<Part>();
+  part->inner_count = gather(way, kReach, there, part->modules);
+  find_beams(*part, there);
+  forget_places(part->modules);
+  const bool is_wide = part->modules.size() >= width_min_ * way.size();
+  return is_wide && part->modules.size() <= kPartSizeMax && factor(*part) ? part : nullptr;
+}
+
+/// All modules that are there near a way to a part, and not of this; there may be none.
+SpreadParts::Part LoadSpread::make_cap(std::span<const std::size_t> way, const Part& below,
+                                       const LocalBalance& there) {
+  for (std::size_t i = 0; i < below.modules.size(); ++i) {
+    below_[below.modules[i]] = static_cast<std::int32_t>(i);
+  }
+  const auto cap = std::make_shared<Part>();
+  gather(way, kReach, there, cap->modules);
+  find_beams(*cap, there);
+  forget_places(cap->modules);
+  for (const std::size_t module : below.modules) {
+    below_[module] = kAbsent;
+  }
+  return factor(*cap) ? cap : nullptr;
+}
+
+/// From a module to the nearest one within a part that is known; empty if none is near.
+std::vector<std::size_t> LoadSpread::way_to_known(std::size_t module, const LocalBalance& there) {
+  std::vector<std::size_t> reached = {module};
+  std::vector<std::size_t> back = {0};  ///< By place in `reached`: from where.
+  place_[module] = 0;
   std::size_t begin = 0;
-  std::size_t inner_count = 0;
-  for (int step = 0; step < kReach; ++step) {
-    inner_count = modules.size();
-    for (; begin < inner_count; ++begin) {
+  for (int step = 0; step < kDetourMax && !known_.with(reached.back()); ++step) {
+    const std::size_t end = reached.size();
+    for (; begin < end && !known_.with(reached.back()); ++begin) {
       for (const Direction direction : base::directions(target_->lattice())) {
-        const std::int32_t other = there.neighbour(modules[begin], base::index(direction));
-        if (other != model::Robot::kNoNeighbour) {
-          take(at(other));
+        const std::int32_t other = there.neighbour(reached[begin], base::index(direction));
+        if (other != model::Robot::kNoNeighbour && place_[at(other)] == kAbsent &&
+            !known_.with(reached.back())) {
+          place_[at(other)] = 0;
+          reached.push_back(at(other));
+          back.push_back(begin);
         }
       }
     }
   }
-  std::vector<Part::Beam> all = beams(modules, there);
-  for (const std::size_t module : modules) {
-    place_[module] = kAbsent;
-  }
-  if (modules.size() < width_min_ * way.size() || modules.size() > kPartSizeMax) {
-    return std::nullopt;
-  }
-  std::optional<solver::BlockLu> factor = factored(modules, all);
-  if (!factor) {
-    return std::nullopt;
-  }
-  return Part{.modules = std::move(modules),
-              .inner_count = inner_count,
-              .beams = std::move(all),
-              .factor = std::move(*factor)};
-}
-
-std::optional<LoadSpread::Entry> LoadSpread::find_known(std::span<const std::size_t> way) const {
-  for (const Part& part : parts_) {
-    const auto inner = std::span(part.modules).first(part.inner_count);
-    for (std::size_t i = 0; i < std::min(way.size(), kDetourMax); ++i) {
-      const auto found = std::ranges::find(inner, way[i]);
-      if (found != inner.end()) {
-        return Entry{
-            .part = &part, .place = static_cast<std::size_t>(found - inner.begin()), .on_way = i};
-      }
+  forget_places(reached);
+  std::vector<std::size_t> way;
+  if (known_.with(reached.back())) {
+    for (std::size_t i = reached.size() - 1; i > 0; i = back[i]) {
+      way.push_back(reached[i]);
     }
+    way.push_back(module);
+    std::ranges::reverse(way);
   }
-  return std::nullopt;
-}
-
-std::optional<LoadSpread::Entry> LoadSpread::find(std::span<const std::size_t> way,
-                                                  const LocalBalance& there) {
-  if (const auto known = find_known(way)) {
-    return known;
-  }
-  auto part = make(way, there);
-  if (!part) {
-    return std::nullopt;
-  }
-  if (parts_.size() == kPartCountMax) {
-    parts_.pop_back();
-  }
-  parts_.push_front(std::move(*part));
-  return Entry{.part = &parts_.front()};
+  return way;
 }
 
 /// What beams and facets take from the modules if these move by u.
@@ -178,7 +205,7 @@ void LoadSpread::subtract_forces(const Part& part, const std::vector<Vec>& u,
       rest[at(place)][k] -= force[k];
     }
   };
-  for (const auto& [a, b, direction] : part.beams) {
+  for (const auto& [a, b, direction, below] : part.beams) {
     const Vec other = b < 0 ? Vec{} : u[at(b)];
     subtract(a, beam_.end_force(direction, u[at(a)], other));
     if (b >= 0) {
@@ -194,20 +221,77 @@ void LoadSpread::subtract_forces(const Part& part, const std::vector<Vec>& u,
   }
 }
 
-std::vector<LoadSpread::Vec> LoadSpread::displacement(const Entry& entry, const Vec& load) const {
-  std::vector<Vec> u(entry.part->modules.size());
-  u[entry.place] = load;
-  std::vector<Vec> rest = u;
-  entry.part->factor.solve(u);
-  subtract_forces(*entry.part, u, rest);
+/// By place; empty if that cannot be told to all digits.
+std::vector<LoadSpread::Vec> LoadSpread::displacement(const Part& part,
+                                                      const std::vector<Vec>& loads) const {
+  std::vector<Vec> u = loads;
+  part.factor.solve(u);
+  std::vector<Vec> rest = loads;
+  subtract_forces(part, u, rest);
   double lack = 0;
-  for (const Vec& force : rest) {
+  double most = 0;
+  for (std::size_t i = 0; i < rest.size(); ++i) {
     for (std::size_t k = 0; k < 6; ++k) {
-      const double size = std::abs(force[k]) / (k < 3 ? 1 : target_->material().pitch_mm);
+      const double per_force = k < 3 ? 1 : 1 / target_->material().pitch_mm;
+      const double size = per_force * std::abs(rest[i][k]);
       lack = size <= lack ? lack : size;  // NaN is largest.
+      most = std::max(most, per_force * std::abs(loads[i][k]));
     }
   }
-  return lack <= kResidualMax * std::sqrt(base::dot(load, load)) ? u : std::vector<Vec>{};
+  return lack <= kResidualMax * most ? u : std::vector<Vec>{};
+}
+
+/// Takes those of the loads that are on a part's modules; by place.
+std::vector<LoadSpread::Vec> LoadSpread::take(std::vector<Load>& loads, const Part& part) {
+  std::vector<Vec> taken(part.modules.size());
+  std::erase_if(loads, [&](const Load& load) {
+    const auto found = std::ranges::find(part.modules, load.module);
+    if (found == part.modules.end()) {
+      return false;
+    }
+    base::add_to(taken[static_cast<std::size_t>(found - part.modules.begin())], load.force);
+    return true;
+  });
+  return taken;
+}
+
+/// What the part below bears of a cap.
+void LoadSpread::add_loads_below(const Share& cap, std::vector<Vec>& loads) const {
+  for (const Part::Beam& beam : cap.part->beams) {
+    if (beam.below >= 0) {
+      const Vec force = beam_.end_force(base::opposite(beam.direction), {}, cap.u[at(beam.a)]);
+      base::add_times(loads[at(beam.below)], -1, force);
+    }
+  }
+}
+
+std::vector<LoadSpread::Share> LoadSpread::spread(std::span<const std::size_t> way,
+                                                  std::span<const Load> loads,
+                                                  const LocalBalance& there) {
+  std::vector<Load> left(loads.begin(), loads.end());
+  std::vector<Share> shares;
+  const std::vector<std::size_t> detour = way_to_known(way.front(), there);
+  const bool is_known = !detour.empty();
+  const SpreadParts::Part part = is_known ? known_.with(detour.back()) : make(way, there);
+  if (!part) {
+    return {};
+  }
+  if (!is_known) {
+    known_.add(part);
+  } else if (const SpreadParts::Part cap = make_cap(detour, *part, there); !cap) {
+    return {};
+  } else if (!cap->modules.empty()) {
+    shares.push_back({cap, displacement(*cap, take(left, *cap))});
+  }
+  std::vector<Vec> on_part = take(left, *part);
+  if (!shares.empty() && !shares.front().u.empty()) {
+    add_loads_below(shares.front(), on_part);
+  }
+  shares.push_back({part, displacement(*part, on_part)});
+  const bool is_whole = left.empty() && std::ranges::none_of(shares, [](const Share& each) {
+                          return each.u.empty();
+                        });
+  return is_whole ? shares : std::vector<Share>{};
 }
 
 }  // namespace holdfast::plan
