@@ -10,8 +10,9 @@ import math
 import sys
 
 WIDTH, HEIGHT, LEFT, BOTTOM, TOP, RIGHT = 720, 440, 70, 50, 40, 150
-# Okabe and Ito's, with black.
-COLOURS = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#000000']
+# Okabe and Ito's, with black; then of Tol's muted ones.
+COLOURS = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#000000',
+           '#882255', '#999933', '#332288']
 
 
 def read_series(lines):
@@ -37,6 +38,16 @@ def label(value):
     exponent = math.floor(math.log10(value) + 1e-9)
     lead = round(value / 10 ** exponent)
     return f'10^{exponent}' if lead == 1 else f'{lead} 10^{exponent}'
+
+
+def place_names(ends):
+    """Where the names of lines that end there stand, from the top down, none on another."""
+    placed = []
+    for x, y, name, colour in sorted(ends, key=lambda end: end[1]):
+        while any(abs(x - other[0]) < 60 and abs(y - other[1]) < 14 for other in placed):
+            y += 1
+        placed.append((x, y, name, colour))
+    return placed
 
 
 def main():
@@ -69,7 +80,7 @@ def main():
                f'text-anchor="middle">{x_label}</text>')
     out.append(f'<text transform="translate(16 {(TOP + HEIGHT - BOTTOM) / 2}) rotate(-90)" '
                f'text-anchor="middle">{y_label}</text>')
-    labels = []
+    ends = []
     for i, (name, line) in enumerate(series.items()):
         is_slope = name.startswith('slope')
         colour = '#888' if is_slope else COLOURS[i % len(COLOURS)]
@@ -79,11 +90,9 @@ def main():
         if not is_slope:
             out += [f'<circle cx="{x_of(x):.1f}" cy="{y_of(y):.1f}" r="3" fill="{colour}"/>'
                     for x, y in line]
-        x, y = x_of(line[-1][0]) + 8, y_of(line[-1][1]) + 4
-        while any(abs(x - other[0]) < 60 and abs(y - other[1]) < 14 for other in labels):
-            y += 14
-        labels.append((x, y))
-        out.append(f'<text x="{x:.1f}" y="{y:.1f}" fill="{colour}">{name}</text>')
+        ends.append((x_of(line[-1][0]) + 8, y_of(line[-1][1]) + 4, name, colour))
+    out += [f'<text x="{x:.1f}" y="{y:.1f}" fill="{colour}">{name}</text>'
+            for x, y, name, colour in place_names(ends)]
     out.append('</svg>')
     print('\n'.join(out))
 
