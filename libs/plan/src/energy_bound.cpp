@@ -204,34 +204,37 @@ bool EnergyBound::is_far_aside(std::size_t module) const {
   return spreads_ && way_energy(module) > kSpreadShare * norm_max * norm_max;
 }
 
-/// What a module's beams put on its neighbours, which are not fixed, goes on to supports through
-/// all modules near its way. False if that cannot be.
+/// What a module's beams put on its neighbours, but for fixed ones.
+std::vector<LoadSpread::Load> EnergyBound::loads_beside(std::size_t module) const {
+  std::vector<LoadSpread::Load> loads;
+  for (const base::Direction direction : base::directions(target_.lattice())) {
+    const std::int32_t other = local_.neighbour(module, base::index(direction));
+    if (other != model::Robot::kNoNeighbour &&
+        target_.modules()[base::at(other)].support != model::Support::kFixed) {
+      LoadSpread::Load& load = loads.emplace_back(LoadSpread::Load{.module = base::at(other)});
+      base::add_times(load.force, -1,
+                      beam_.end_force(base::opposite(direction), u_[load.module], u_[module]));
+    }
+  }
+  return loads;
+}
+
+/// A module's beams bear what they do where it is now, and what they put on its neighbours goes on
+/// to supports through all modules near its way. False if that cannot be.
 bool EnergyBound::spread(std::size_t from) {
   std::vector<std::size_t> way = {from};
   while (!has_root(way.back())) {
     way.push_back(base::at(nodes_[way.back()].ways.front().to));
   }
-  std::vector<LoadSpread::Load> loads;
-  std::vector<int> own;
-  for (const base::Direction direction : base::directions(target_.lattice())) {
-    const std::int32_t other = local_.neighbour(from, base::index(direction));
-    if (other == model::Robot::kNoNeighbour) {
-      continue;
-    }
-    own.push_back(base::index(direction));
-    if (target_.modules()[base::at(other)].support != model::Support::kFixed) {
-      LoadSpread::Load& load = loads.emplace_back(LoadSpread::Load{.module = base::at(other)});
-      base::add_times(load.force, -1,
-                      beam_.end_force(base::opposite(direction), u_[load.module], u_[from]));
-    }
-  }
-  const std::vector<LoadSpread::Share> shares = spread_.spread(way, loads, local_);
+  const std::vector<LoadSpread::Share> shares = spread_.spread(way, loads_beside(from), local_);
   if (shares.empty()) {
     return false;
   }
-  for (const int direction : own) {
-    const std::int32_t other = local_.neighbour(from, direction);
-    changes_.bear(from, direction, u_[from], u_[base::at(other)]);
+  for (const base::Direction direction : base::directions(target_.lattice())) {
+    const std::int32_t other = local_.neighbour(from, base::index(direction));
+    if (other != model::Robot::kNoNeighbour) {
+      changes_.bear(from, base::index(direction), u_[from], u_[base::at(other)]);
+    }
   }
   std::ranges::for_each(shares, [&](const LoadSpread::Share& share) { bear(share); });
   return true;

@@ -140,6 +140,7 @@ class EnergyBound {
   void open_gaps(std::size_t module);
   double way_energy(std::size_t from) const;
   bool is_far_aside(std::size_t module) const;
+  std::vector<LoadSpread::Load> loads_beside(std::size_t module) const;
   bool spread(std::size_t from);
   void bear(const LoadSpread::Share& share);
   void carry(std::size_t from);

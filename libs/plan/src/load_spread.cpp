@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 
+#include "block_product.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/model/facet_starts.hpp"
 #include "holdfast/model/material.hpp"
@@ -37,15 +38,11 @@ LoadSpread::LoadSpread(const model::Robot& target, std::size_t width_min)
     : target_(&target),
       width_min_(width_min),
       beam_(model::beam_section(target.material()), target.lattice()),
+      blocks_(beam_, target.lattice()),
       first_facet_(model::facet_starts(target)),
       place_(target.modules().size(), kAbsent),
       below_(target.modules().size(), kAbsent),
-      known_(target.modules().size()) {
-  for (const Direction direction : base::directions(target.lattice())) {
-    k11_[at(base::index(direction))] = beam_.block_11(direction);
-    k12_[at(base::index(direction))] = beam_.block_12(direction);
-  }
-}
+      known_(target.modules().size()) {}
 
 bool LoadSpread::is_fixed(std::size_t module) const {
   return target_->modules()[module].support == model::Support::kFixed;
@@ -109,17 +106,16 @@ bool LoadSpread::factor(Part& part) const {
   std::vector<solver::Edge> edges;
   std::vector<const base::Mat6<double>*> coupling;
   for (const Part::Beam& beam : part.beams) {
-    const auto index = at(base::index(beam.direction));
-    base::add_to(diagonal[at(beam.a)], k11_[index]);
+    base::add_to(diagonal[at(beam.a)], blocks_.block_11(beam.direction));
     if (beam.b >= 0) {
-      base::add_to(diagonal[at(beam.b)], k11_[at(base::index(base::opposite(beam.direction)))]);
+      base::add_to(diagonal[at(beam.b)], blocks_.block_11(base::opposite(beam.direction)));
       edges.push_back({beam.a, beam.b});
-      coupling.push_back(&k12_[index]);
+      coupling.push_back(&blocks_.block_12(beam.direction));
     }
   }
   for (std::size_t i = 0; i < modules.size(); ++i) {
     for (std::size_t k = first_facet_[modules[i]]; k < first_facet_[modules[i] + 1]; ++k) {
-      base::add_to(diagonal[i], beam_.block_11(target_->facets()[k].direction));
+      base::add_to(diagonal[i], blocks_.block_11(target_->facets()[k].direction));
     }
   }
   part.factor = solver::BlockLu(modules.size(), edges, std::numeric_limits<std::size_t>::max(),
@@ -167,29 +163,33 @@ SpreadParts::Part LoadSpread::make_cap(std::span<const std::size_t> way, const P
 
 /// From a module to the nearest one within a part that is known; empty if none is near.
 std::vector<std::size_t> LoadSpread::way_to_known(std::size_t module, const LocalBalance& there) {
-  std::vector<std::size_t> reached = {module};
-  std::vector<std::size_t> back = {0};  ///< By place in `reached`: from where.
+  struct Reached {
+    std::size_t module = 0;
+    std::size_t from = 0;  ///< Its place among those that were reached.
+    int steps = 0;
+  };
+
+  std::vector<Reached> reached = {{.module = module}};
   place_[module] = 0;
-  std::size_t begin = 0;
-  for (int step = 0; step < kDetourMax && !known_.with(reached.back()); ++step) {
-    const std::size_t end = reached.size();
-    for (; begin < end && !known_.with(reached.back()); ++begin) {
-      for (const Direction direction : base::directions(target_->lattice())) {
-        const std::int32_t other = there.neighbour(reached[begin], base::index(direction));
-        if (other != model::Robot::kNoNeighbour && place_[at(other)] == kAbsent &&
-            !known_.with(reached.back())) {
-          place_[at(other)] = 0;
-          reached.push_back(at(other));
-          back.push_back(begin);
-        }
+  std::size_t next = 0;
+  for (; next < reached.size() && !known_.with(reached[next].module); ++next) {
+    const auto [here, from, steps] = reached[next];
+    for (const Direction direction : base::directions(target_->lattice())) {
+      const std::int32_t other = there.neighbour(here, base::index(direction));
+      if (steps < kDetourMax && other != model::Robot::kNoNeighbour &&
+          place_[at(other)] == kAbsent) {
+        place_[at(other)] = 0;
+        reached.push_back({.module = at(other), .from = next, .steps = steps + 1});
       }
     }
   }
-  forget_places(reached);
+  for (const Reached& each : reached) {
+    place_[each.module] = kAbsent;
+  }
   std::vector<std::size_t> way;
-  if (known_.with(reached.back())) {
-    for (std::size_t i = reached.size() - 1; i > 0; i = back[i]) {
-      way.push_back(reached[i]);
+  if (next < reached.size()) {
+    for (std::size_t i = next; i > 0; i = reached[i].from) {
+      way.push_back(reached[i].module);
     }
     way.push_back(module);
     std::ranges::reverse(way);
@@ -200,23 +200,20 @@ std::vector<std::size_t> LoadSpread::way_to_known(std::size_t module, const Loca
 /// What beams and facets take from the modules if these move by u.
 void LoadSpread::subtract_forces(const Part& part, const std::vector<Vec>& u,
                                  std::vector<Vec>& rest) const {
-  const auto subtract = [&](std::int32_t place, const Vec& force) {
-    for (std::size_t k = 0; k < 6; ++k) {
-      rest[at(place)][k] -= force[k];
-    }
-  };
-  for (const auto& [a, b, direction, below] : part.beams) {
-    const Vec other = b < 0 ? Vec{} : u[at(b)];
-    subtract(a, beam_.end_force(direction, u[at(a)], other));
-    if (b >= 0) {
-      subtract(b, beam_.end_force(base::opposite(direction), other, u[at(a)]));
+  for (const Part::Beam& beam : part.beams) {
+    const Vec& own = u[at(beam.a)];
+    const Vec other = beam.b < 0 ? Vec{} : u[at(beam.b)];
+    base::add_times(rest[at(beam.a)], -1, beam_.end_force(beam.direction, own, other));
+    if (beam.b >= 0) {
+      base::add_times(rest[at(beam.b)], -1,
+                      beam_.end_force(base::opposite(beam.direction), other, own));
     }
   }
   for (std::size_t i = 0; i < part.modules.size(); ++i) {
     const std::size_t module = part.modules[i];
     for (std::size_t k = first_facet_[module]; k < first_facet_[module + 1]; ++k) {
-      subtract(static_cast<std::int32_t>(i),
-               base::multiply(beam_.block_11(target_->facets()[k].direction), u[i]));
+      base::add_times(rest[i], -1,
+                      block_product(blocks_.block_11(target_->facets()[k].direction), u[i]));
     }
   }
 }

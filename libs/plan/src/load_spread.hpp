@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "beam_blocks.hpp"
 #include "holdfast/model/lattice_beam.hpp"
 #include "holdfast/model/robot.hpp"
 #include "local_balance.hpp"
@@ -74,8 +74,7 @@ class LoadSpread {
   const model::Robot* target_;
   std::size_t width_min_;
   model::LatticeBeam<double> beam_;
-  std::array<base::Mat6<double>, base::Lattice::kDirectionCountMax> k11_{};  ///< By direction.
-  std::array<base::Mat6<double>, base::Lattice::kDirectionCountMax> k12_{};
+  BeamBlocks blocks_;
   std::vector<std::size_t> first_facet_;  ///< By module.
   std::vector<std::int32_t> place_;       ///< By module: in a part that is made, or kAbsent;
   std::vector<std::int32_t> below_;       ///< the same in the part that a cap stands on.
