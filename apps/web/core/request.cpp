@@ -79,6 +79,9 @@ std::optional<base::Error> take_more(std::string_view more, io::Document& docume
     return read.error();
   }
   const io::Document& general = read.value().document;
+  if (!(general.material == Material{})) {
+    return base::bad_input("the material and gravity straight down are numbers of the request");
+  }
   document.extension = general.extension;
   document.extension.obstacle_list = std::move(obstacle_list);
   take_own(own_by_cell(general), document);

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 import { Role, cellText, type Cell } from './cell';
 import { CUBIC, type Lattice, type Place } from './lattice';
-import { TABLE_I, gravityMagnitude, pitchMm } from './material';
-import { NO_SURROUNDINGS, ObstacleIndex, ownLoads, textOf, type OwnLoads, type Surroundings, type Vector } from './surroundings';
+import { TABLE_I, gravityMagnitude, pitchMm, withGravity } from './material';
+import {
+  NO_SURROUNDINGS, ObstacleIndex, isStraightDown, ownLoads, textOf, type OwnLoads, type Surroundings, type Vector,
+} from './surroundings';
 
 /** Cells are counted from a robot's first one and stay within this distance of it. */
 const REACH = 100_000;
@@ -245,8 +247,8 @@ export class EditedRobot {
         modules[4 * i + k] = this.data[4 * slot + k];
       }
     });
-    const { supportZ, material } = this;
-    return { data: { modules, supportZ, material, more: this.moreText(hasSteps) }, slots };
+    const { supportZ } = this;
+    return { data: { modules, supportZ, material: this.wholeMaterial, more: this.moreText(hasSteps) }, slots };
   }
 
   /** x, y, z and role of each module, in the order of its slots. */
@@ -271,10 +273,18 @@ export class EditedRobot {
     return this.lattice === CUBIC && Object.keys(this.more).every((key) => key === 'steps');
   }
 
+  /** Gravity straight down is a number of the material, for the core as in files. */
+  private get wholeMaterial(): Float64Array {
+    return isStraightDown(this.gravity) ? withGravity(this.material, -this.gravity[2]) : this.material;
+  }
+
   private moreText(hasSteps: boolean): string {
-    const { steps, ...more } = this.more;
+    const { steps, gravity_m_s2, ...rest } = this.more;
+    const gravity = gravity_m_s2 === undefined || isStraightDown(gravity_m_s2) ? {} : { gravity_m_s2 };
     const isPlain = this.isPlain && (!hasSteps || steps === undefined);
-    return isPlain ? '' : textOf({ ...(hasSteps ? this.more : more), lattice: this.lattice.name });
+    return isPlain
+      ? ''
+      : textOf({ ...rest, ...gravity, ...(hasSteps && steps !== undefined ? { steps } : {}), lattice: this.lattice.name });
   }
 
   private key(cell: Cell): number | undefined {

@@ -14,3 +14,7 @@ const [PITCH, GRAVITY] = ['pitch_mm', 'gravity_m_s2'].map(indexOf);
 export const pitchMm = (material: Float64Array) => material[PITCH];
 /** m/s^2 */
 export const gravityMagnitude = (material: Float64Array) => material[GRAVITY];
+export const withGravity = (material: Float64Array, magnitude: number) =>
+  material.map((old, k) => (k === GRAVITY ? magnitude : old));
+/** Gravity has a form of its own, for its direction too. */
+export const isGravity = (parameter: number) => parameter === GRAVITY;

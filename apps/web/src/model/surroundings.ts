@@ -66,10 +66,11 @@ export function tidied(surroundings: Surroundings): Surroundings {
   return Object.fromEntries(Object.entries(surroundings).filter(([, value]) => isSaid(value)));
 }
 
-/** What a file has besides: its first members. */
+/** What a file has besides: its first members, and the level of its floor, which is the robot's. */
 export function withoutHead(surroundings: Surroundings): Surroundings {
   const head = ['format', 'version', 'name', 'description'];
-  return tidied(Object.fromEntries(Object.entries(surroundings).filter(([key]) => !head.includes(key))));
+  const isOwn = ([key, value]: [string, unknown]) => !head.includes(key) && !(key === 'support_z' && value !== null);
+  return tidied(Object.fromEntries(Object.entries(surroundings).filter(isOwn)));
 }
 
 /** As a file of the JSON format. */
@@ -229,6 +230,8 @@ const DEGREE = Math.PI / 180;
 /** No digits that are rounding. */
 const rounded = (value: number) => Number(value.toPrecision(12)) + 0;
 
+export const isStraightDown = ([x, y, z]: Vector) => x === 0 && y === 0 && z < 0;
+
 export function gravityOf({ angle, downhill, strength }: Slope): Vector {
   const level = strength * Math.sin(angle * DEGREE);
   const parts = [level * Math.cos(downhill * DEGREE), level * Math.sin(downhill * DEGREE), -strength * Math.cos(angle * DEGREE)];
@@ -240,7 +243,8 @@ export function slopeOf([x, y, z]: Vector): Slope {
   return {
     angle: rounded(Math.atan2(level, -z) / DEGREE),
     downhill: level === 0 ? 0 : rounded(Math.atan2(y, x) / DEGREE),
-    strength: rounded(Math.hypot(level, z)),
+    // One digit less than the parts have: turned to and fro it stays what it was.
+    strength: Number(Math.hypot(level, z).toPrecision(11)),
   };
 }
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { ROLE_NAMES, Role, type Cell } from './cell';
 import { History, type Change } from './history';
-import { EditedRobot } from './edited_robot';
+import { EditedRobot, type Settings } from './edited_robot';
 import { latticeOf } from './lattice';
 import {
   isNothing, tidied, withBurden, withObstacles, withoutObstacle, type Burden, type Hold, type Obstacle, type Surroundings,
@@ -70,10 +70,10 @@ export class Workbench {
     }
   }
 
-  /** Changes some of what surrounds the robot. */
-  surround(label: string, change: Surroundings): void {
+  /** Changes some of what surrounds the robot, and other settings with it. */
+  surround(label: string, change: Surroundings, settings: Partial<Settings> = {}): void {
     performance.mark('edit');
-    this.history.configure(label, { surroundings: tidied({ ...this.robot.surroundings, ...change }) });
+    this.history.configure(label, { ...settings, surroundings: tidied({ ...this.robot.surroundings, ...change }) });
   }
 
   /** Sets cells to a role, or empties them. */

@@ -1,9 +1,12 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 import type { Settings } from '../model/edited_robot';
-import { PARAMETERS, TABLE_I } from '../model/material';
+import { PARAMETERS, TABLE_I, isGravity } from '../model/material';
 import type { Workbench } from '../model/workbench';
 import { byId, make, tell } from './dom';
+
+/** Indices of the parameters that have a field here. */
+const SHOWN = [...PARAMETERS.keys()].filter((i) => !isGravity(i));
 
 /** Makes the form once; what it shows follows the robot, and the focus stays where it is. */
 export function makeMaterial(bench: Workbench): void {
@@ -12,8 +15,10 @@ export function makeMaterial(bench: Workbench): void {
     input.onchange = () => change(bench, input.value, settings);
     return make('label', { className: 'row' }, label, make('span', { className: 'field' }, input, unit));
   };
-  const rows = PARAMETERS.map(({ label, unit }, i) =>
-    field(label, unit, (value) => ({ material: bench.robot.material.map((old, k) => (k === i ? value : old)) })),
+  const rows = SHOWN.map((i) =>
+    field(PARAMETERS[i].label, PARAMETERS[i].unit, (value) => ({
+      material: bench.robot.material.map((old, k) => (k === i ? value : old)),
+    })),
   );
   const level = field('Ground at z', '', (value) => ({ supportZ: Math.round(value) }));
   const reset = make('button', { type: 'button', textContent: 'Blinky Blocks (Table I)' });
@@ -24,7 +29,7 @@ export function makeMaterial(bench: Workbench): void {
 
 function showMaterial({ robot }: Workbench): void {
   byId('material').querySelectorAll('input').forEach((input, i) => {
-    input.value = i === PARAMETERS.length ? String(robot.supportZ) : shown(robot.material[i]);
+    input.value = i === SHOWN.length ? String(robot.supportZ) : shown(robot.material[SHOWN[i]]);
   });
 }
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 import { LATTICES } from '../model/lattice';
-import { gravityMagnitude } from '../model/material';
-import { gravityOf, isNothing, slopeOf, type Slope, type Vector } from '../model/surroundings';
+import { withGravity } from '../model/material';
+import { gravityOf, isNothing, isStraightDown, slopeOf, type Slope, type Vector } from '../model/surroundings';
 import type { Workbench } from '../model/workbench';
 import { byId, make, tell } from './dom';
 
@@ -97,9 +97,12 @@ export function makeSurroundings(bench: Workbench): void {
 function gravityFields(bench: Workbench): (() => void)[] {
   const place = byId('surroundings');
   const setGravity = (gravity: Vector) => {
-    const usual: Vector = [0, 0, -gravityMagnitude(bench.robot.material)];
-    const isUsual = gravity.every((value, k) => value === usual[k]);
-    bench.surround('turning gravity', { gravity_m_s2: isUsual ? undefined : gravity });
+    const { material } = bench.robot;
+    if (isStraightDown(gravity)) {
+      bench.surround('gravity', { gravity_m_s2: undefined }, { material: withGravity(material, -gravity[2]) });
+    } else {
+      bench.surround('turning gravity', { gravity_m_s2: gravity });
+    }
   };
   const setSlope = (change: Partial<Slope>) =>
     setGravity(gravityOf({ ...slopeOf(bench.robot.gravity), downhill: lastDownhill, ...change }));
