@@ -7,6 +7,7 @@
 #include <span>
 
 #include "holdfast/plan/transition.hpp"
+#include "rolling.hpp"
 #include "way.hpp"
 
 namespace holdfast::plan {
@@ -14,6 +15,9 @@ namespace {
 
 using base::Cell;
 using base::Direction;
+
+/// Rounding of heights, in pitches.
+constexpr double kTouching = 1e-9;
 
 /// The moves of one module. Keeps references.
 class MoveFinder {
@@ -27,7 +31,7 @@ class MoveFinder {
 
   std::vector<model::Move> find() {
     for (const Cell& along : steps()) {
-      if (is_open(sum(axial_, along)) && (!rule_.pivots || can_roll(along))) {
+      if (is_open(sum(axial_, along)) && can_step(along)) {
         add({.from = from_, .to = base::cell_of(lattice_, sum(axial_, along)), .carrier = {}});
       }
     }
@@ -50,25 +54,104 @@ class MoveFinder {
   /// Whether a module may sweep a cell, axial.
   bool is_free(const Cell& axial) const {
     const Cell cell = base::cell_of(lattice_, axial);
-    return robot_.find(cell) == RobotState::kNone && (!rule_.floor_z || cell.z >= *rule_.floor_z) &&
-           robot_.obstacles().find(cell) == model::CellIndex::kNone;
+    return !is_taken(axial) && (!rule_.floor_z || cell.z >= *rule_.floor_z);
+  }
+
+  /// Whether a module or an obstacle is in a cell, axial.
+  bool is_taken(const Cell& axial) const {
+    const Cell cell = base::cell_of(lattice_, axial);
+    return robot_.find(cell) != RobotState::kNone ||
+           robot_.obstacles().find(cell) != model::CellIndex::kNone;
   }
 
   bool is_module(const Cell& axial) const {
     return robot_.find(base::cell_of(lattice_, axial)) != RobotState::kNone;
   }
 
-  /// Whether a cube can turn by a quarter over two modules in a row.
-  bool can_roll(const Cell& along) const {
+  bool is_step(const Cell& axial) const {
+    return std::ranges::find(steps(), axial) != steps().end();
+  }
+
+  /// Whether a module's body gets into the next cell.
+  bool can_step(const Cell& along) const {
+    if (lattice_ == base::kCubic) {
+      return !rule_.pivots || can_pivot(along);
+    }
+    const Cell to = sum(axial_, along);
+    const auto is_beside = [&](const Cell& away) {
+      const Cell other = difference(axial_, away);
+      return is_taken(other) && is_step(difference(to, other)) && rolls(to, other);
+    };
+    if (std::ranges::none_of(steps(), is_beside)) {
+      return true;
+    }
     return std::ranges::any_of(steps(), [&](const Cell& away) {
       const Cell carrier = difference(axial_, away);
-      return is_module(carrier) && is_module(sum(carrier, along)) && is_free(sum(axial_, away)) &&
+      return is_beside(away) && is_module(carrier) && can_roll(to, carrier);
+    });
+  }
+
+  /// Whether the way to a cell about a neighbour is that of a ball or disc. Prisms slide up, down
+  /// and over each other, and turn like discs in their layer.
+  bool rolls(const Cell& to, const Cell& carrier) const {
+    return lattice_ != base::kHexagonalPrism || (to.z == axial_.z && carrier.z == axial_.z);
+  }
+
+  /// Whether a ball, or a disc, can roll to a cell, axial, about a carrier that both cells touch,
+  /// alone or with another such module, without coming nearer than a pitch to anybody else.
+  bool can_roll(const Cell& to, const Cell& carrier) const {
+    const auto is_clear = [&](const Cell& second) {
+      const auto arc = RollingArc::about(lattice_, axial_, to, carrier, second);
+      return arc && is_above_floor(*arc) && !is_barred(*arc, carrier) && !is_barred(*arc, second);
+    };
+    return is_clear(carrier) || std::ranges::any_of(steps(), [&](const Cell& away) {
+             const Cell second = difference(axial_, away);
+             return second != carrier && is_module(second) && is_step(difference(to, second)) &&
+                    rolls(to, second) && is_clear(second);
+           });
+  }
+
+  bool is_above_floor(const RollingArc& arc) const {
+    return !rule_.floor_z ||
+           arc.lowest() > base::node_place(lattice_, {0, 0, *rule_.floor_z})[2] - kTouching;
+  }
+
+  /// Whether somebody within two steps of a carrier is in the way; further away nobody is.
+  bool is_barred(const RollingArc& arc, const Cell& carrier) const {
+    const auto bars = [&](const Cell& axial) {
+      return axial != axial_ && is_taken(axial) &&
+             arc.sweeps(base::place_of<double>(lattice_, axial));
+    };
+    return std::ranges::any_of(steps(), [&](const Cell& first) {
+      const Cell near = sum(carrier, first);
+      return bars(near) || std::ranges::any_of(steps(), [&](const Cell& second) {
+               return bars(sum(near, second));
+             });
+    });
+  }
+
+  /// Whether a cube can turn by a quarter over two modules in a row.
+  bool can_pivot(const Cell& along) const {
+    const Cell back = difference({}, along);
+    return std::ranges::any_of(steps(), [&](const Cell& away) {
+      const Cell carrier = difference(axial_, away);
+      return away != along && away != back && is_module(carrier) &&
+             is_module(sum(carrier, along)) && is_free(sum(axial_, away)) &&
              is_free(sum(sum(axial_, away), along));
     });
   }
 
+  /// Whether a module's body gets around a carrier.
+  bool can_turn(const Cell& carrier, const Cell& along) const {
+    if (lattice_ == base::kCubic) {
+      return !rule_.pivots || can_pivot_around(difference(axial_, carrier), along);
+    }
+    const Cell to = sum(carrier, along);
+    return !rolls(to, carrier) || can_roll(to, carrier);
+  }
+
   /// Whether a cube can turn by a half about the edge of its carrier.
-  bool can_turn(const Cell& away, const Cell& along) const {
+  bool can_pivot_around(const Cell& away, const Cell& along) const {
     const Cell beyond = sum(axial_, sum(along, along));
     return is_free(sum(axial_, away)) && is_free(sum(sum(axial_, away), along)) &&
            is_free(beyond) && is_free(difference(beyond, away));
@@ -79,9 +162,9 @@ class MoveFinder {
     const Cell away = difference(axial_, centre);
     for (const Cell& along : steps()) {
       const Cell way = difference(along, away);
-      const bool is_slide = way == Cell{} || std::ranges::find(steps(), way) != steps().end();
+      const bool is_slide = way == Cell{} || is_step(way);
       if (is_slide || !is_open(sum(axial_, along)) || !is_open(sum(centre, along)) ||
-          (rule_.pivots && !can_turn(away, along))) {
+          !can_turn(centre, along)) {
         continue;
       }
       const Cell to = base::cell_of(lattice_, sum(centre, along));

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "holdfast/base/lattice.hpp"
+
+namespace holdfast::plan {
+
+/// The way of a ball's centre, in pitches, that turns from one node to another about the centre of
+/// a ball that it touches, or about the line through the centres of two. It keeps touching them.
+class RollingArc {
+ public:
+  using Place = std::array<double, 3>;
+
+  /// About `first`, or about the line through it and `second`; cells are axial, and both ends touch
+  /// them. Of the two ways about a line or a ball it is the shorter one; no value for ends that lie
+  /// on opposite sides, between which all are as long.
+  static std::optional<RollingArc> about(const base::Lattice& lattice, const base::Cell& from,
+                                         const base::Cell& to, const base::Cell& first,
+                                         const base::Cell& second);
+
+  /// Whether a ball on the way overlaps the one at a node by more than rounding.
+  bool sweeps(const Place& node) const;
+
+  /// The smallest height on the way.
+  double lowest() const;
+
+ private:
+  RollingArc(const Place& centre, const Place& start, const Place& end);
+
+  double largest_along(const Place& vector) const;
+
+  Place centre_{};
+  Place start_{};     ///< From the centre.
+  Place sideways_{};  ///< As long, a quarter turn further.
+  double angle_ = 0;
+};
+
+}  // namespace holdfast::plan
