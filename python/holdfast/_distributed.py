@@ -14,10 +14,10 @@ import numpy.typing as npt
 
 from . import _core
 from ._report import Report
-from ._verdict import VERDICTS, Verdict
+from ._verdict import VERDICTS, Judged, Verdict
 
 
-class Run:
+class Run(Judged):
     """What the modules of a robot came to, beside the exact answer. It never changes."""
 
     __slots__ = ('_held',)

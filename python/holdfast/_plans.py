@@ -13,10 +13,10 @@ import numpy.typing as npt
 from . import _core
 from ._progress import Progress, told
 from ._robot import Cell, Cells, Path, Robot, Table, counted
-from ._verdict import VERDICTS, Verdict
+from ._verdict import VERDICTS, Judged, Verdict
 
 
-class Stage(enum.Enum):
+class Stage(str, enum.Enum):
     """The three stages of a step (Sec. II-B)."""
 
     RELEASE = 'release'
@@ -24,7 +24,7 @@ class Stage(enum.Enum):
     CONNECT = 'connect'
 
 
-class Outcome(enum.Enum):
+class Outcome(str, enum.Enum):
     """What came of a search."""
 
     FOUND = 'found'
@@ -32,6 +32,25 @@ class Outcome(enum.Enum):
     """There is none, which is proved."""
     NOT_FOUND = 'not-found'
     """Time ran out, or undecided states are in the way."""
+
+
+class _Sought:
+    """What came of a search. It has no truth value: a search may find nothing and prove nothing."""
+
+    __slots__ = ()
+
+    @property
+    def outcome(self) -> Outcome:
+        raise NotImplementedError
+
+    @property
+    def is_found(self) -> bool:
+        """Whether the outcome is FOUND."""
+        return self.outcome is Outcome.FOUND
+
+    def __bool__(self) -> bool:
+        raise TypeError(f'a {type(self).__name__} is neither true nor false; '
+                        'ask for its is_found or its outcome')
 
 
 def _robot(source: Union[Robot, Path]) -> Robot:
@@ -135,7 +154,7 @@ def next_places(robot: Union[Robot, Path], *, threads: int = 0, memory: float = 
     return places
 
 
-class Steps(_Texts):
+class Steps(_Texts, Judged):
     """A sequence of steps, each judged at its three stages (Sec. II-B)."""
 
     __slots__ = ('robot',)
@@ -227,7 +246,7 @@ def steps(robot: Union[Robot, Path], plan: Optional[Sequence[Mapping[str, Any]]]
     return judged
 
 
-class Order(_Texts):
+class Order(_Texts, _Sought):
     """An order in which a robot can be built, or taken apart, safe all the way."""
 
     __slots__ = ()
@@ -291,7 +310,7 @@ class Order(_Texts):
         return Robot._of(self._held.as_steps())
 
     def certificate(self) -> str:
-        """What proves that there is no order; `verify_order` replays it."""
+        """What proves that there is no order; ``holdfast steps --verify FILE`` replays it."""
         return self._held.certificate()
 
     def __repr__(self) -> str:
@@ -336,7 +355,7 @@ def order(target: Union[Robot, Path], *, start: Optional[Cells] = None, reach: s
     return found
 
 
-class Moves(_Texts):
+class Moves(_Texts, _Sought):
     """Moves from one shape to another, safe at every stage."""
 
     __slots__ = ()

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._optional import need
-from ._verdict import VERDICTS, Verdict
+from ._verdict import VERDICTS, Judged, Verdict
 
 if TYPE_CHECKING:
     from ._robot import Robot
@@ -35,7 +35,7 @@ class Timings(NamedTuple):
     limit: float
 
 
-class Report:
+class Report(Judged):
     """The verdict on a robot, and everything that it rests on. It never changes.
 
     Arrays are views of what the solver found: nothing is copied, and they keep it alive.

@@ -1,14 +1,16 @@
 # SPDX-FileCopyrightText: The holdfast authors
 # SPDX-License-Identifier: Apache-2.0
 """What a check can say."""
+from __future__ import annotations
+
 import enum
 
 
-class Verdict(enum.Enum):
-    """Will the robot hold?
+class Verdict(str, enum.Enum):
+    """Will the robot hold? Each verdict is also its name, a string.
 
-    >>> Verdict.SAFE.value
-    'safe'
+    >>> Verdict.SAFE == 'safe'
+    True
     """
 
     SAFE = 'safe'
@@ -20,6 +22,42 @@ class Verdict(enum.Enum):
     UNDECIDED = 'undecided'
     """Not certain; the reasons say why."""
 
+    # What is printed does not depend on the version of Python.
+    __str__ = str.__str__
+    __format__ = str.__format__
+
+    @staticmethod
+    def from_code(code: int) -> Verdict:
+        """The verdict that arrays and tables have a number for, 0 to 3.
+
+        >>> Verdict.from_code(0)
+        <Verdict.SAFE: 'safe'>
+
+        Raises ValueError for any other number.
+        """
+        if not 0 <= code < len(VERDICTS):
+            raise ValueError(f'code: expected 0 to {len(VERDICTS) - 1}, found {code}')
+        return VERDICTS[code]
+
 
 VERDICTS = tuple(Verdict)
 """By the number that the arrays have for them."""
+
+
+class Judged:
+    """What has a verdict. It has no truth value, as only one of the four verdicts is good news."""
+
+    __slots__ = ()
+
+    @property
+    def verdict(self) -> Verdict:
+        raise NotImplementedError
+
+    @property
+    def is_safe(self) -> bool:
+        """Whether the verdict is SAFE: neither unsafe nor uncertain."""
+        return self.verdict is Verdict.SAFE
+
+    def __bool__(self) -> bool:
+        raise TypeError(f'a {type(self).__name__} is neither true nor false; '
+                        'ask for its is_safe or its verdict')

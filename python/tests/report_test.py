@@ -180,3 +180,51 @@ def test_many_are_the_same_as_each(root):
     assert rows['load_ratio_max'] == pytest.approx(
         [report.load_ratio_max or np.nan for report in reports], nan_ok=True)
     assert holdfast.check_many([]) == []
+
+
+def test_a_verdict_is_its_name_and_a_judgement_is_no_truth_value(root, arm):
+    """What everybody writes first must not read an overload as good news."""
+    steps = holdfast.judge_steps(root / 'scenarios/arm_breaks_b.json') if hasattr(
+        holdfast, 'judge_steps') else None
+    run = arm.simulate()
+    order = holdfast.load(root / 'scenarios/arm_breaks_a.json').order()
+    assert arm.check().verdict == 'overload' and json.dumps(arm.check().verdict) == '"overload"'
+    assert f'{Verdict.SAFE}' == str(Verdict.SAFE) == 'safe'
+    assert [Verdict.from_code(code) for code in range(4)] == list(Verdict)
+    with pytest.raises(ValueError, match='expected 0 to 3, found 4'):
+        Verdict.from_code(4)
+    for judged in [arm.check(), run] + ([steps] if steps is not None else []):
+        assert judged.is_safe == (judged.verdict == 'safe')
+        with pytest.raises(TypeError, match='is_safe'):
+            bool(judged)
+    with pytest.raises(TypeError, match='is_found'):
+        bool(order)
+    assert order.is_found == (order.outcome == 'found')
+
+
+def test_every_name_in_backticks_exists():
+    """Docstrings of the package, its classes and their members."""
+    import inspect
+    import re
+
+    public = {name: getattr(holdfast, name) for name in holdfast.__all__}
+    members = {name for thing in public.values() if inspect.isclass(thing) for name in dir(thing)}
+    known = set(public) | members | {'None'}
+    count = 0
+    for name, thing in public.items():
+        documented = [(name, thing)]
+        parameters = set()
+        if inspect.isclass(thing):
+            documented += [(f'{name}.{key}', value) for key, value in vars(thing).items()]
+        for _, value in documented:
+            function = value.fget if isinstance(value, property) else getattr(
+                value, '__func__', value)
+            if inspect.isfunction(function):
+                parameters |= set(inspect.signature(function).parameters)
+        for where, value in documented:
+            for quoted in re.findall(r'(?<!`)`([^`]+)`(?!`)', inspect.getdoc(value) or ''):
+                last = quoted.split('(')[0].split('.')[-1]
+                count += 1
+                assert last in known or last in parameters or hasattr(holdfast, last), (
+                    where, quoted)
+    assert count > 20
