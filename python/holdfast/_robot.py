@@ -213,22 +213,26 @@ class Robot:
         return robot
 
     @classmethod
-    def from_file(cls, path: Path, *, lattice: str = '', robot: str = '') -> Robot:
+    def from_file(cls, path: Path, *, lattice: str = '', robot: str = '',
+                  allow_unknown: bool = False) -> Robot:
         """Reads VisibleSim XML, holdfast JSON, version 1 or 2, or a binary structure.
 
-        `lattice` and `robot` say what the file leaves open.
+        `lattice` and `robot` say what the file leaves open. A key of holdfast JSON that is unknown
+        is an error, unless it begins with ``x-``; with `allow_unknown` it is ignored and stands in
+        `warnings`.
         """
-        return cls._of(_core.Structure.load_file(path, lattice, robot))
+        return cls._of(_core.Structure.load_file(path, lattice, robot, allow_unknown))
 
     @classmethod
-    def from_text(cls, text: str, *, name: str = '', lattice: str = '', robot: str = '') -> Robot:
+    def from_text(cls, text: str, *, name: str = '', lattice: str = '', robot: str = '',
+                  allow_unknown: bool = False) -> Robot:
         """Reads what `from_file` reads from a text.
 
         >>> text = Robot([[0, 0, 0]], name='one').json()
         >>> Robot.from_text(text)
         <holdfast.Robot 'one' of 1 module, cubic>
         """
-        return cls._of(_core.Structure.load_text(text, name, lattice, robot))
+        return cls._of(_core.Structure.load_text(text, name, lattice, robot, allow_unknown))
 
     @classmethod
     def from_voxels(cls, voxels: npt.ArrayLike, *, origin: Sequence[int] = (0, 0, 0),
@@ -366,11 +370,7 @@ class Robot:
                                   'its own, which steps cannot say; allowed is a robot without it')
         there = {_cell_of(module) for module in document['modules']} | attached
         document['loads'] = [load for load in document.get('loads', []) if _cell_of(load) in there]
-        made = self.from_text(_json(document), name=self.name)
-        for warning in made.warnings:
-            if warning.startswith('/steps/'):  # In a file an unknown key may be somebody else's.
-                raise _core.Error(warning)
-        return made
+        return self.from_text(_json(document), name=self.name)
 
     @property
     def step_count(self) -> int:
@@ -515,7 +515,7 @@ class Robot:
 
     def __setstate__(self, state: tuple[str]) -> None:
         if state[0] != self.name:
-            self._held = _core.Structure.load_text(self.json(), state[0], '', '')
+            self._held = _core.Structure.load_text(self.json(), state[0], '', '', False)
 
     def __copy__(self) -> Robot:
         return self
@@ -531,9 +531,9 @@ class Robot:
                 f'{f" and {planned} planned" if planned else ""}, {self.lattice}>')
 
 
-def load(path: Path, *, lattice: str = '', robot: str = '') -> Robot:
+def load(path: Path, *, lattice: str = '', robot: str = '', allow_unknown: bool = False) -> Robot:
     """Reads a robot, see `Robot.from_file`."""
-    return Robot.from_file(path, lattice=lattice, robot=robot)
+    return Robot.from_file(path, lattice=lattice, robot=robot, allow_unknown=allow_unknown)
 
 
 def generate(family: str, size: int) -> Robot:

@@ -19,8 +19,8 @@ SharedStructure share(base::Result<Structure> made, std::string_view file = {}) 
   return std::make_shared<const Structure>(take(std::move(made), file));
 }
 
-io::ReadOptions reading(const py::handle& lattice, const py::handle& robot) {
-  io::ReadOptions options{.robot = utf8_of(robot, "robot")};
+io::ReadOptions reading(const py::handle& lattice, const py::handle& robot, bool allow_unknown) {
+  io::ReadOptions options{.robot = utf8_of(robot, "robot"), .allow_unknown = allow_unknown};
   if (const std::string name = utf8_of(lattice, "lattice"); !name.empty()) {
     options.lattice = take(io::find_lattice(name));
   }
@@ -86,11 +86,7 @@ SharedStructure make(const py::handle& cells, const py::handle& planned, const p
                      const py::handle& head, const Own& own) {
   io::Document document;
   if (const std::string json = utf8_of(head, "options"); !json.empty()) {
-    auto read = take(io::read_json(json));
-    if (!read.warnings.empty()) {  // In a file an unknown key may be somebody else's.
-      throw Error(read.warnings.front());
-    }
-    document = std::move(read.document);
+    document = take(io::read_json(json)).document;
   }
   const auto existing = cells_of(cells, "cells");
   const auto to_come = planned.is_none() ? std::vector<base::Cell>{} : cells_of(planned, "planned");
@@ -300,9 +296,9 @@ py::list catalogue() {
 }
 
 SharedStructure from_file(const py::handle& given, const py::handle& lattice,
-                          const py::handle& robot) {
+                          const py::handle& robot, bool allow_unknown) {
   const std::string path = path_of(given);
-  const io::ReadOptions options = reading(lattice, robot);
+  const io::ReadOptions options = reading(lattice, robot, allow_unknown);
   auto read = take(without_gil([&] { return load_file(path, 0, options); }), path);
   // The name is the file's, which need not be UTF-8.
   const auto size = static_cast<py::ssize_t>(read.name.size());
@@ -315,10 +311,10 @@ void add_readers(py::class_<Structure, std::shared_ptr<Structure>>& type) {
   type.def_static("make", &make)
       .def_static("load_text",
                   [](const py::handle& given, const py::handle& called, const py::handle& lattice,
-                     const py::handle& robot) {
+                     const py::handle& robot, bool allow_unknown) {
                     const std::string text = utf8_of(given, "text");
                     const std::string name = utf8_of(called, "name");
-                    const io::ReadOptions options = reading(lattice, robot);
+                    const io::ReadOptions options = reading(lattice, robot, allow_unknown);
                     return share(without_gil([&] { return load_text(text, name, 0, options); }),
                                  name);
                   })

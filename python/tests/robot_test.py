@@ -286,3 +286,19 @@ def test_another_robot_has_no_known_answer():
     assert 'known_answer' in robot.json()
     for other in (robot.attached(), robot.planning([]), robot.with_steps([])):
         assert 'known_answer' not in other.json()
+
+
+def test_unknown_keys_are_errors_in_texts_files_and_arguments(tmp_path):
+    text = ('{"format": "holdfast-structure", "version": 1, "modules": [[0,0,0]], "blocks": 1, '
+            '"x-mine": {}}')
+    path = tmp_path / 'robot.json'
+    path.write_text(text)
+    for read in (lambda **options: holdfast.load(path, **options),
+                 lambda **options: Robot.from_text(text, **options)):
+        with pytest.raises(holdfast.Error, match="/blocks: the key 'blocks' is unknown, expected"):
+            read()
+        assert ['blocks' in warning for warning in read(allow_unknown=True).warnings] == [True]
+    with pytest.raises(holdfast.Error, match="'weight' is unknown, expected"):
+        Robot([[0, 0, 0]], material={'weight': 1})
+    grams = Robot([[0, 0, 0]], material={'mass_kg': 61.06})
+    assert [warning[:16] for warning in grams.warnings] == ['density 954 t/m3']

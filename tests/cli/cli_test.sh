@@ -362,24 +362,27 @@ expect_refusal "/modules/0/fixd: .*did you mean 'fixed'\?" slip.json
 json '"modules": [[0,0,0]], "material": {"mass": 5}' >slip.json
 expect_refusal "did you mean 'mass_kg'\?" slip.json
 xml() { printf '<parameters %s/><world gridSize="2,2,2">%s</world>' "$1" "$2"; }
-xml 'globalmass="0.1"' '<blockList><block position="0,0,0"/></blockList>' >slip.xml
-expect_refusal "'globalmass' is unknown: did you mean 'globalMass'\?" slip.xml
+xml 'global_mass="0.1"' '<blockList><block position="0,0,0"/></blockList>' >slip.xml
+expect_refusal "'global_mass' is unknown: did you mean 'globalMass'\?" slip.xml
 xml '' '<blockList><block position="0,0,0" fixd="true"/></blockList>' >slip.xml
 expect_refusal "'fixd' is unknown: did you mean 'fixed'\?" slip.xml
-xml '' '<blockList><block position="0,0,0"/></blockList><targetlist/>' >slip.xml
+xml '' '<blockList><block position="0,0,0"/></blockList><targetslist/>' >slip.xml
 expect_refusal "did you mean 'targetList'\?" slip.xml
 json '"modules": [[0,0,0]], "colour_scheme": 3' >noted.json
 xml '' '<blockList><block position="0,0,0" isWall="true"/></blockList>' >noted.xml
-expect_exit 0 check --quiet noted.json noted.xml
+expect_refusal "/colour_scheme: the key 'colour_scheme' is unknown, expected " noted.json
+json '"modules": [[0,0,0]], "x-colour_scheme": 3' >free.json
+expect_exit 0 check --quiet free.json
+expect_exit 0 check --quiet --allow-unknown noted.json noted.xml
 expect_line err "^holdfast: noted.json: note: /colour_scheme: .*is unknown and ignored$"
 expect_line err "^holdfast: noted.xml: note: .*'isWall' is unknown and kept$"
 expect_exit 65 check slip.xml "$safe"
-expect_exit 0 simulate --quiet noted.json
+expect_exit 0 simulate --quiet --allow-unknown noted.json
 expect_line err "note: .*'colour_scheme'"
 # Once, where both outputs go to one place; on standard error and in the report, where they do not.
 json '"modules": [[0,0,0]], "colour_scheme": 3, "planned": [[0,0,1]]' >noted_steps.json
-for words in 'check noted.json' 'simulate noted.json' 'simulate --steps noted_steps.json' \
-  'simulate --stages noted_steps.json'; do
+for words in 'check --allow-unknown noted.json' 'simulate --allow-unknown noted.json' 'simulate --allow-unknown --steps noted_steps.json' \
+  'simulate --allow-unknown --stages noted_steps.json'; do
   # shellcheck disable=SC2086
   "$program" $words >both 2>&1 </dev/null
   [ "$(grep -c colour_scheme both)" -eq 1 ] || fault "not one note: $words: $(cat both)"
@@ -398,7 +401,7 @@ expect_line out '0 connect .* undecided  *-  not judged: the robot would be in p
 json '"modules": [[0,0,0], [1,0,0]]' >pair.json
 expect_exit 0 simulate pair.json --detach 1,0,0@0.1 --kill 1,0,0@5
 expect_line out 'note  .*\(1,0,0\) was not there when it was to fall silent: nothing came of that$'
-expect_exit 0 convert noted.json noted_again.xml
+expect_exit 0 convert --allow-unknown noted.json noted_again.xml
 expect_line err "note: .*'colour_scheme'"
 
 # No output overwrites an input or another output, however they are spelt.

@@ -22,7 +22,7 @@ _holdfast() {
         --limit-seconds) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --json --connections --csv --svg --vtk --html --certificate --prove --limit --limit-seconds -q --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --allow-unknown --json --connections --csv --svg --vtk --html --certificate --prove --limit --limit-seconds -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     steps)
@@ -36,7 +36,7 @@ _holdfast() {
         --until-unsafe) : ;;
         --verify) : ;;
         --threads) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --json --svg --html --vtk --until-unsafe --verify -q --quiet --threads"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --allow-unknown --json --svg --html --vtk --until-unsafe --verify -q --quiet --threads"; else files=1; fi ;;
       esac
       ;;
     next)
@@ -48,7 +48,7 @@ _holdfast() {
         --limit) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --json --svg --limit -q --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --allow-unknown --json --svg --limit -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     order)
@@ -66,7 +66,7 @@ _holdfast() {
         --certificate) files=1 ;;
         --robot) : ;;
         --lattice) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --from --reach --source --group --reverse --seed --exact --seconds --help-seconds --threads -q --quiet -o --output --json --certificate --robot --lattice"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --from --reach --source --group --reverse --seed --exact --seconds --help-seconds --threads -q --quiet -o --output --json --certificate --robot --lattice --allow-unknown"; else files=1; fi ;;
       esac
       ;;
     move)
@@ -80,7 +80,7 @@ _holdfast() {
         --verify) files=1 ;;
         --robot) : ;;
         --lattice) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --pivot --within --geometry-only --seed --seconds --threads -q --quiet -o --output --json --verify --robot --lattice"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --pivot --within --geometry-only --seed --seconds --threads -q --quiet -o --output --json --verify --robot --lattice --allow-unknown"; else files=1; fi ;;
       esac
       ;;
     simulate)
@@ -106,7 +106,7 @@ _holdfast() {
         --trace) files=1 ;;
         --story) files=1 ;;
         --svg) files=1 ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --steps --stages --next --json --connections --trace --story --svg -q --quiet"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --allow-unknown --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --steps --stages --next --json --connections --trace --story --svg -q --quiet"; else files=1; fi ;;
       esac
       ;;
     emulate)
@@ -128,14 +128,14 @@ _holdfast() {
         --json) files=1 ;;
         --connections) : ;;
         --svg) files=1 ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --board --image --pages --seed --kill --reset --cut --flip --plan --withdraw --attach --time --json --connections --svg -q --quiet"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --allow-unknown --board --image --pages --seed --kill --reset --cut --flip --plan --withdraw --attach --time --json --connections --svg -q --quiet"; else files=1; fi ;;
       esac
       ;;
     convert)
       case $previous in
         --robot) : ;;
         --lattice) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --allow-unknown"; else files=1; fi ;;
       esac
       ;;
     generate)
@@ -155,7 +155,7 @@ _holdfast() {
         --robot) : ;;
         --lattice) : ;;
         --out) files=1 ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --out --no-open"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --allow-unknown --out --no-open"; else files=1; fi ;;
       esac
       ;;
   esac

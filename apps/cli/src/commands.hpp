@@ -130,6 +130,10 @@ inline void add_reading(CLI::App& command, io::ReadOptions& options) {
         const auto found = io::find_lattice(name);
         return found ? std::string() : found.error().message;
       });
+  command.add_flag(
+      "--allow-unknown", options.allow_unknown,
+      "Ignore keys of holdfast JSON that are unknown, with a note; without it they are "
+      "errors");
 }
 
 /// Reads a structure and prints its notes. 0 threads: as many as the machine has cores.

@@ -406,6 +406,8 @@ void add_reading(CLI::App& command, io::ReadOptions& reading) {
         const auto found = io::find_lattice(name);
         return found ? std::string() : found.error().message;
       });
+  command.add_flag("--allow-unknown", reading.allow_unknown,
+                   "Ignore keys of holdfast JSON that are unknown, with a note");
 }
 
 /// Which of one rank and of many answers.

@@ -43,11 +43,12 @@ base::Result<Structure> make_structure(io::Document document, std::string_view n
   if (!robot) {
     return robot.error();
   }
+  std::vector<std::string> doubts = io::doubtful_figures(document);
   std::string title = document.name.empty() ? std::string(name) : document.name;
   return Structure{.name = std::move(title),
                    .document = std::move(document),
                    .robot = std::move(robot).value(),
-                   .warnings = {}};
+                   .warnings = std::move(doubts)};
 }
 
 base::Result<Structure> load_text(std::string_view text, std::string_view name, int thread_count,

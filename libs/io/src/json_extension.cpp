@@ -81,7 +81,7 @@ std::vector<model::CellPair> pairs(JsonReading& reading, const Json& value,
 /// A failure if an object lacks a key that it must have.
 void demand(JsonReading& reading, const Json& value, const JsonPlace& place, std::string_view key) {
   if (value.is_object() && !value.contains(key)) {
-    reading.fail(place.at(key), fmt::format("\"{}\" is missing", key));
+    reading.fail_missing(place, key);
   }
 }
 
@@ -109,6 +109,11 @@ void read_gravity(JsonReading& reading, const Json& value, const JsonPlace& plac
   }
   if (gravity[0] == 0 && gravity[1] == 0 && gravity[2] < 0) {
     document.material.gravity_m_s2 = -gravity[2];
+    const auto* const parameter = std::ranges::find(model::kMaterialParameters, "gravity_m_s2",
+                                                    &model::MaterialParameter::key);
+    if (const auto fault = model::find_fault(*parameter, -gravity[2])) {
+      reading.fail(place, "the size of " + *fault);
+    }
   } else {
     document.extension.gravity_m_s2 = gravity;
   }
@@ -281,6 +286,7 @@ void read_own_parameter(JsonReading& reading, std::string_view key, const Json& 
 
 void read_extension_text(Reading& reading, std::string_view text, const Reading::Where& where) {
   JsonReading json;
+  json.allows_unknown = reading.allows_unknown;
   json.document.material = reading.document.material;
   json.document.extension = std::move(reading.document.extension);
   const auto root = parse_json(text);

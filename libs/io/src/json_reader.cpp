@@ -32,6 +32,7 @@ class JsonReader {
   void read_material(const Json& value, const JsonPlace& place);
   void read_known_answer(const Json& value, const JsonPlace& place);
   void read_visiblesim(const Json& value, const JsonPlace& place);
+  void spell_as_known(Attributes& attributes, Names known, const JsonPlace& place);
   void take_old_obstacles(std::vector<Element>& list, const JsonPlace& place);
   std::vector<Element> scenery(const Json& value, const JsonPlace& place);
   std::vector<Element> targets(const Json& value, const JsonPlace& place);
@@ -50,13 +51,19 @@ class JsonReader {
 };
 
 base::Result<ReadDocument> JsonReader::read(const Json& root, const ReadOptions& options) && {
+  reading_.allows_unknown = options.allow_unknown;
   const JsonPlace top;
   const Json::object_t& members = reading_.members(root, top);
   if (!reading_.has_failed() && read_heading(members, top, options)) {
     for (const auto& [key, value] : members) {
       read_member(key, value, top.at(key));
     }
-    reading_.complete_material([&] { return top.at("material").pointer(); });
+    reading_.complete_material([&] {
+      const auto has = [&](const char* key) { return root.contains(key); };
+      return has("material") ? top.at("material").pointer()
+             : has("robot")  ? top.at("robot").pointer()
+                             : "";
+    });
     check_kinds(reading_);
     check_pair_lists(reading_);
   }
@@ -76,17 +83,24 @@ bool JsonReader::read_heading(const Json::object_t& root, const JsonPlace& place
   };
   const Json& format = value_of("format");
   const Json& version = value_of("version");
+  const auto expect = [&](const char* key, const std::string& expected) {
+    if (root.find(key) == root.end()) {
+      reading_.fail_missing(place, key, expected);
+    } else {
+      reading_.refuse(value_of(key), place.at(key), expected);
+    }
+  };
   if (format != kJsonFormatName) {
-    reading_.refuse(format, place.at("format"), fmt::format("\"{}\"", kJsonFormatName));
+    expect("format", fmt::format("\"{}\"", kJsonFormatName));
   } else if (version.is_number() && version.get<double>() > kJsonVersionMax) {
     reading_.fail({base::ErrorCode::kUnsupported,
                    fmt::format("found version {}, this program reads versions 1 to {} only",
                                version.dump(), kJsonVersionMax),
                    place.at("version").pointer()});
   } else if (version != 1 && version != kJsonVersionMax) {
-    reading_.refuse(version, place.at("version"), fmt::format("1 or {}", kJsonVersionMax));
+    expect("version", fmt::format("1 or {}", kJsonVersionMax));
   } else if (root.find("modules") == root.end()) {
-    reading_.fail(place.at("modules"), "\"modules\" is missing, expected is an array of cells");
+    expect("modules", "an array of cells");
   }
   is_extended_ = version == kJsonVersionMax;
   const Json& material = value_of("material");
@@ -202,6 +216,9 @@ void JsonReader::read_known_answer(const Json& value, const JsonPlace& place) {
       reading_.note_unknown_key(here, kKnownAnswerKeys);
     }
   }
+  if (value.is_object() && !value.contains("verdict")) {
+    reading_.fail_missing(place, "verdict");
+  }
   reading_.take_known_answer(std::move(answer), [&] { return place.at("verdict").pointer(); });
 }
 
@@ -214,9 +231,11 @@ void JsonReader::read_visiblesim(const Json& value, const JsonPlace& place) {
       document.parameters = reading_.attributes(member, here, is_mechanical_parameter);
     } else if (key == "world") {
       document.world = reading_.attributes(member, here, is_free);
-      reading_.read_grid([&] { return here.at("gridSize").pointer(); });
+      spell_as_known(document.world, kWorldAttributes, here);
+      reading_.read_grid([&] { return here.pointer(); });
     } else if (key == "block_list") {
       document.block_list = reading_.attributes(member, here, is_free);
+      spell_as_known(document.block_list, kBlockListAttributes, here);
     } else if (key == "obstacle_list") {
       if (allows(here)) {
         document.extension.obstacle_list = reading_.attributes(member, here, is_free);
@@ -227,6 +246,21 @@ void JsonReader::read_visiblesim(const Json& value, const JsonPlace& place) {
       document.targets = targets(member, here);
     } else {
       reading_.note_unknown_key(here, kVisibleSimKeys);
+    }
+  }
+}
+
+/// As in VisibleSim XML, from which they come: in any case.
+void JsonReader::spell_as_known(Attributes& attributes, Names known, const JsonPlace& place) {
+  for (auto& [name, value] : attributes) {
+    const auto spelling = known_spelling(name, known);
+    if (spelling && *spelling != name) {
+      if (find_attribute(attributes, *spelling) != nullptr) {
+        reading_.fail(place, fmt::format("{} and {} differ only in case, allowed is one",
+                                         excerpt(*spelling), excerpt(name)));
+        return;
+      }
+      name = *spelling;
     }
   }
 }
@@ -253,7 +287,8 @@ std::vector<Element> JsonReader::scenery(const Json& value, const JsonPlace& pla
 
 std::vector<Element> JsonReader::targets(const Json& value, const JsonPlace& place) {
   std::vector<Element> list = reading_.element_list(value, place, 1);
-  for (const Element& element : list) {
+  for (Element& element : list) {
+    spell_as_known(element.attributes, kTargetAttributes, place);
     const std::string* const format = find_attribute(element.attributes, "format");
     if (element.name != "target" || (format != nullptr && *format == "grid")) {
       reading_.fail(place,

@@ -3,6 +3,7 @@
 #include "json_values.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <limits>
@@ -53,13 +54,26 @@ void JsonReading::fail(const JsonPlace& place, std::string message) {
   fail({base::ErrorCode::kBadInput, std::move(message), place.pointer()});
 }
 
+void JsonReading::fail_missing(const JsonPlace& object, std::string_view key,
+                               std::string_view expected) {
+  fail(object, fmt::format("key \"{}\" is missing{}{}", key, expected.empty() ? "" : ", expected ",
+                           expected));
+}
+
 void JsonReading::refuse(const Json& value, const JsonPlace& place, std::string_view expected) {
   fail(place, fmt::format("found {}, expected is {}", describe(value), expected));
 }
 
 void JsonReading::note_unknown_key(const JsonPlace& place, Names known) {
-  note_unknown(fmt::format("the key {}", excerpt(place.key)), place.key, known, "ignored",
-               [&] { return place.pointer(); });
+  if (place.key.starts_with("x-")) {
+    return;
+  }
+  const std::string what = fmt::format("the key {}", excerpt(place.key));
+  note_unknown(what, place.key, known, "ignored", [&] { return place.pointer(); });
+  if (!allows_unknown) {
+    fail(place, fmt::format("{} is unknown, expected {} or a key of your own that begins with x-",
+                            what, fmt::join(known, ", ")));
+  }
 }
 
 const Json::object_t& JsonReading::members(const Json& value, const JsonPlace& place) {
@@ -159,7 +173,9 @@ Element JsonReading::element(const Json& value, const JsonPlace& place, int dept
       note_unknown_key(here, kElementKeys);
     }
   }
-  if (const auto fault = find_name_fault(element.name)) {
+  if (value.is_object() && !value.contains("element")) {
+    fail_missing(place, "element");
+  } else if (const auto fault = find_name_fault(element.name)) {
     fail(place.at("element"), *fault);
   }
   return element;

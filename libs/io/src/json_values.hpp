@@ -34,10 +34,14 @@ class JsonReading : public Reading {
 
   void fail(const JsonPlace& place, std::string message);
 
+  /// An object lacks a key that it must have.
+  void fail_missing(const JsonPlace& object, std::string_view key, std::string_view expected = "");
+
   /// The one message for a value that is not what it should be.
   void refuse(const Json& value, const JsonPlace& place, std::string_view expected);
 
-  /// A key that is none of the known ones.
+  /// A key that is none of the known ones: a failure, or a note if unknown ones are allowed;
+  /// neither if it begins with `x-`.
   void note_unknown_key(const JsonPlace& place, Names known);
 
   const Json::object_t& members(const Json& value, const JsonPlace& place);

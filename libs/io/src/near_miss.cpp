@@ -15,15 +15,29 @@ constexpr std::size_t kSlipLengthMin = 4;
 constexpr std::size_t kSecondSlipLengthMin = 8;
 constexpr std::size_t kSlipsMax = 2;
 
+char small(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
 /// Small letters and digits only, as people remember a name.
 std::string folded(std::string_view name) {
   std::string plain;
   for (const char c : name) {
     if (c != '_' && c != '-') {
-      plain += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+      plain += small(c);
     }
   }
   return plain;
+}
+
+/// The words between '_' in the order of the alphabet.
+std::vector<std::string_view> words_of(std::string_view name) {
+  std::vector<std::string_view> words;
+  for (std::size_t end = name.find('_'); end != std::string_view::npos; end = name.find('_')) {
+    words.push_back(name.substr(0, end));
+    name.remove_prefix(end + 1);
+  }
+  words.push_back(name);
+  std::ranges::sort(words);
+  return words;
 }
 
 /// Letters changed, added, left out or exchanged with the next one: the restricted distance of
@@ -58,6 +72,16 @@ std::size_t slips_allowed(std::size_t length) {
 
 }  // namespace
 
+std::optional<std::string_view> known_spelling(std::string_view name, Names known) {
+  auto found = std::ranges::find(known, name);
+  if (found == known.end()) {
+    found = std::ranges::find_if(known, [&](std::string_view candidate) {
+      return std::ranges::equal(name, candidate, {}, small, small);
+    });
+  }
+  return found == known.end() ? std::nullopt : std::optional(*found);
+}
+
 std::optional<std::string_view> near_miss(std::string_view name, Names known) {
   if (std::ranges::find(known, name) != known.end()) {
     return std::nullopt;
@@ -69,7 +93,9 @@ std::optional<std::string_view> near_miss(std::string_view name, Names known) {
     const std::string like = folded(candidate);
     const bool lacks_unit = plain.size() >= kSlipLengthMin && candidate.starts_with(name) &&
                             candidate[name.size()] == '_';
-    const std::size_t count = lacks_unit ? 0 : slips(plain, like);
+    const bool is_the_same =
+        lacks_unit || (name.size() == candidate.size() && words_of(name) == words_of(candidate));
+    const std::size_t count = is_the_same ? 0 : slips(plain, like);
     if (count <= slips_allowed(like.size()) && count < slips_least) {
       nearest = candidate;
       slips_least = count;

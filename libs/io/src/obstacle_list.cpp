@@ -42,9 +42,8 @@ class ObstacleListReader {
       if (child.name == kObstacleElement) {
         read_obstacle(child);
       } else {
-        constexpr std::string_view kChildren[] = {kObstacleElement};
         reading_.note_unknown(fmt::format("the element {}", excerpt(child.name)), child.name,
-                              kChildren, "ignored here", where_);
+                              kObstacleListElements, "ignored here", where_);
       }
     }
     if (std::ranges::none_of(extension_.obstacle_colors,

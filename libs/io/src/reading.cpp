@@ -112,7 +112,7 @@ void Reading::take_robot(const std::string& named, const ReadOptions& options, c
     fail({base::ErrorCode::kBadInput,
           fmt::format("the robot {} is none of the catalogue, which has {}", excerpt(name),
                       fmt::join(names, ", ")),
-          where()});
+          named.empty() ? "" : where()});
     return;
   }
   document.extension.robot = name;
@@ -194,11 +194,8 @@ base::Result<ReadDocument> Reading::finish() && {
 
 void Reading::warn_of_content() {
   const Where nowhere = [] { return std::string(); };
-  if (document.material.facet_mm > document.material.pitch_mm) {
-    warn(fmt::format("facets of {} mm are wider than the pitch of {} mm: feet reach beyond their "
-                     "cells, and the support polygon with them",
-                     document.material.facet_mm, document.material.pitch_mm),
-         nowhere);
+  for (std::string& doubt : doubtful_figures(document)) {
+    warn(std::move(doubt), nowhere);
   }
   warn_of_attributes();
   for (const ModuleEntry& module : document.modules) {

@@ -40,6 +40,7 @@ class Reading {
   using Where = std::function<std::string()>;
 
   Document document;
+  bool allows_unknown = false;  ///< ReadOptions::allow_unknown.
 
   void fail(base::Error error);
 

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "holdfast/io/document.hpp"
+#include "holdfast/model/robot_catalogue.hpp"
 #include "json_values.hpp"
 #include "robot_defaults.hpp"
 #include "text_input.hpp"
@@ -86,11 +88,25 @@ std::optional<base::Error> find_fault(const Connectors& connectors, const JsonPl
   return std::nullopt;
 }
 
+/// What a beam as wide as the pitch has, which a file that names a robot need not say.
+model::Material section_of_pitch(double pitch_mm) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  model::Material section;
+  section.pitch_mm = pitch_mm;
+  section.facet_mm = section.section_area_mm2 = section.torsion_mm4 = kNone;
+  section.moment_x_mm4 = section.moment_y_mm4 = kNone;
+  model::fill_section(section);
+  return section;
+}
+
 std::optional<base::Error> find_fault(const model::Material& material, const JsonPlace& place) {
+  const model::Material of_pitch = section_of_pitch(material.pitch_mm);
   for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
-    if (auto fault = model::find_fault(parameter, material.*parameter.value)) {
+    const double value = material.*parameter.value;
+    if (auto fault = model::find_fault(parameter, value)) {
+      const bool is_of_pitch = value == of_pitch.*parameter.value;
       return base::Error{base::ErrorCode::kBadInput, *std::move(fault),
-                         place.at(parameter.key).pointer()};
+                         place.at(is_of_pitch ? "pitch_mm" : parameter.key).pointer()};
     }
   }
   return std::nullopt;

@@ -247,8 +247,7 @@ void read_block_list(XmlReading& reading, const pugi::xml_node& list) {
 }
 
 Step read_grid_target(XmlReading& reading, const pugi::xml_node& target) {
-  constexpr std::string_view kFormat[] = {"format"};
-  reading.expect_attributes(target, kFormat);
+  reading.expect_attributes(target, kTargetAttributes);
   Step step;
   std::int32_t plane = 0;
   for (const pugi::xml_node& child : target.children()) {

@@ -14,6 +14,7 @@
 #include "visiblesim_cells.hpp"
 #include "vocabulary.hpp"
 #include "xml_reading.hpp"
+#include "xml_spelling.hpp"
 
 namespace holdfast::io {
 namespace {
@@ -71,18 +72,10 @@ void read_extension(XmlReading& reading, const pugi::xml_node& node) {
 /// <holdfast>: what our writer adds to the file.
 void read_own_element(XmlReading& reading, const pugi::xml_node& node) {
   Document& document = reading.document;
-  std::vector<std::string_view> known = {"name",    "description", "robot",
-                                         "lattice", "computed",    kShift};
-  for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
-    if (parameter.visiblesim == nullptr) {
-      known.emplace_back(parameter.key);
-    }
-  }
-  reading.expect_attributes(node, known);
-  constexpr std::string_view kChildren[] = {"knownAnswer", kExtensionElement};
+  reading.expect_attributes(node, own_element_names());
   for (const pugi::xml_node& child : node.children()) {
-    if (child.name() != kChildren[0] && child.name() != kChildren[1]) {
-      reading.warn_of_unknown_child(child, kChildren);
+    if (std::ranges::find(kOwnElements, child.name()) == kOwnElements.end()) {
+      reading.warn_of_unknown_child(child, kOwnElements);
     }
   }
   document.name = node.attribute("name").value();
@@ -108,8 +101,7 @@ void read_targets(XmlReading& reading, const pugi::xml_node& list) {
   reading.expect_attributes(list, {});
   for (const pugi::xml_node& child : list.children()) {
     if (child.name() != std::string_view("target")) {
-      constexpr std::string_view kTarget[] = {"target"};
-      reading.warn_of_unknown_child(child, kTarget);
+      reading.warn_of_unknown_child(child, kTargetListElements);
     } else if (child.attribute("format").value() == std::string_view("grid")) {
       reading.document.steps.push_back(read_grid_target(reading, child));
     } else {
@@ -240,8 +232,10 @@ base::Result<ReadDocument> read_visiblesim(std::string_view text, const ReadOpti
   }
   XmlReading reading(text);
   pugi::xml_document tree;
+  reading.allows_unknown = options.allow_unknown;
   reading.parse(tree);
   if (!reading.has_failed()) {
+    spell_as_known(tree);
     const pugi::xml_node root = only_child(reading, tree, kRootElement);
     if (root) {
       expect_nothing_beside(reading, tree);

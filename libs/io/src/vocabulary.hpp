@@ -135,10 +135,9 @@ inline constexpr auto kElementKeys =
     std::to_array<std::string_view>({"element", "attributes", "text", "children"});
 
 inline constexpr auto kWorldAttributes = std::to_array<std::string_view>(
-    {kGridSize, "gridsize", "windowSize", "maxSimulationTime", "separatorPlane"});
-inline constexpr auto kBlockListAttributes =
-    std::to_array<std::string_view>({"blockSize", "blocksize", "color", "orientation", "size",
-                                     "ids", "idseed", "seed", "step", "format"});
+    {kGridSize, "windowSize", "maxSimulationTime", "separatorPlane"});
+inline constexpr auto kBlockListAttributes = std::to_array<std::string_view>(
+    {"blockSize", "color", "orientation", "size", "ids", "idseed", "seed", "step", "format"});
 inline constexpr auto kBlockAttributes = std::to_array<std::string_view>(
     {"position", "color", "fixed", "centroid", "solver", "stabilityCheck", "id", "master", "leader",
      "alive", "angle", "orientation", "rotation", kDatomAttribute, "isTarget", "isWall",
@@ -159,6 +158,11 @@ inline constexpr auto kWorldElements = std::to_array<std::string_view>(
      "customization", "capabilities", "targetGrid", "trash", "scenario"});
 inline constexpr auto kBlockListElements =
     std::to_array<std::string_view>({"block", "blocksLine", "blockBox", "csg", "mesh"});
+inline constexpr auto kTargetListElements = std::to_array<std::string_view>({"target"});
+inline constexpr auto kTargetAttributes = std::to_array<std::string_view>({"format"});
+inline constexpr auto kObstacleListElements = std::to_array<std::string_view>({kObstacleElement});
+inline constexpr auto kOwnElements =
+    std::to_array<std::string_view>({"knownAnswer", kExtensionElement});
 inline constexpr auto kTargetElements =
     std::to_array<std::string_view>({"cell", "targetLine", "csg", "method"});
 
@@ -179,6 +183,21 @@ inline const std::vector<std::string_view>& parameter_names() {
     for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
       if (parameter.visiblesim != nullptr) {
         list.emplace_back(parameter.visiblesim);
+      }
+    }
+    return list;
+  }();
+  return names;
+}
+
+/// All attributes of <holdfast>.
+inline const std::vector<std::string_view>& own_element_names() {
+  static const std::vector<std::string_view> names = [] {
+    std::vector<std::string_view> list = {"name",    "description", "robot",
+                                          "lattice", "computed",    kShift};
+    for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
+      if (parameter.visiblesim == nullptr) {
+        list.emplace_back(parameter.key);
       }
     }
     return list;

@@ -195,7 +195,8 @@ Attributes XmlReading::attributes(const pugi::xml_node& node,
   for (const pugi::xml_attribute& attribute : node.attributes()) {
     const std::string_view name = attribute.name();
     if (find_attribute(all, name) != nullptr) {
-      fail(node, fmt::format("the attribute {} of {} is there twice, allowed is once",
+      fail(node, fmt::format("the attribute {} of {} is there twice, whatever the case of its "
+                             "letters; allowed is once",
                              excerpt(name), excerpt(node.name())));
     }
     if (all.size() == kAttributeCountMax) {

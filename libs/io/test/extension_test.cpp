@@ -382,10 +382,10 @@ TEST(Version2, says_what_is_wrong_and_what_is_allowed) {
   bad(R"("obstacles": [{"from": [0,0,1], "to": [0,0,0]}])", "/obstacles/0", "may be below");
   bad(R"("obstacles": [{"cells": [[0,0,0]], "hold": "glued"}])", "/obstacles/0/hold",
       R"(one of "contact", "bonded")");
-  bad(R"("loads": [{"force_n": [0,0,0]}])", "/loads/0/cell", "is missing");
+  bad(R"("loads": [{"force_n": [0,0,0]}])", "/loads/0", "key \"cell\" is missing");
   bad(R"("loads": [{"cell": [0,0,0], "force": [0,0,0]}])", "/loads/0/force", "'force_n'");
   bad(R"("steps": [{"atach": []}])", "/steps/0/atach", "did you mean 'attach'?");
-  bad(R"("steps": [{"move": [{"from": [0,0,0]}]}])", "/steps/0/move/0/to", "is missing");
+  bad(R"("steps": [{"move": [{"from": [0,0,0]}]}])", "/steps/0/move/0", "key \"to\" is missing");
   bad(R"("steps": [{"release": [[[0,0,0]]]}])", "/steps/0/release/0", "the two of a connection");
   expect_refusal(version_2(R"("modules": [{"cell": [0,0,0], "kind": "b"}], "kinds": {"a": {}})"),
                  "/modules/0/kind", "the kind 'b' is none of those");

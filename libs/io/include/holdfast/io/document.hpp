@@ -69,7 +69,7 @@ struct Document {
   friend bool operator==(const Document&, const Document&) = default;
 };
 
-/// A document and what its reader wants its user to know (unknown attributes, later steps...).
+/// A document and what its reader wants its user to know (kept attributes, later steps...).
 struct ReadDocument {
   Document document;
   std::vector<std::string> warnings;
@@ -86,10 +86,14 @@ inline constexpr int kNestingMax = 64;
 /// is not white space: '<' for XML, '{' or '[' for JSON; an error for anything else.
 base::Result<Format> detect_format(std::string_view text);
 
-/// What holds where a file says nothing of it; a file that says otherwise is an error.
+/// What holds where a file says nothing of it, where a file that says otherwise is an error, and
+/// what a file may hold.
 struct ReadOptions {
   std::optional<base::Lattice> lattice = {};  ///< One of kNamedLattices.
   std::string robot = {};  ///< One of model::robot_catalogue(); empty: Table I of the paper.
+  /// Whether a key of holdfast JSON that nobody knows is ignored with a note. If not, it is an
+  /// error, as what it says would be lost, but for one that begins with `x-`, which is for others.
+  bool allow_unknown = false;
 };
 
 /// Reads any of the formats. Error::where is "line 12" or a JSON pointer such as "/modules/3".
@@ -118,6 +122,11 @@ bool is_large_box(const model::Obstacle& obstacle);
 /// are written as they are.
 std::string write_visiblesim(const Document& document);
 std::string write_json(const Document& document);
+
+/// Figures that a robot may have but hardly does, with what was probably meant: a density of
+/// modules, a modulus or a pitch in another unit, facets wider than the pitch, all modules of a
+/// shape that stands in the layer on the floor. Readers give them as warnings.
+std::vector<std::string> doubtful_figures(const Document& document);
 
 /// What model::Robot::create makes the robot of the document with the first step from, without its
 /// plan. Errors: a number that is not allowed; a module is of a kind that the document does not
