@@ -23,7 +23,6 @@ struct Place {
 
 using Places = std::map<base::Cell, Place>;
 
-
 RobotEffort effort_of(const sim::SimulationResult& result) {
   return {.time = result.verdict_time, .rounds = result.rounds, .packets = result.packets};
 }

@@ -71,9 +71,9 @@ struct RigidStability {
   std::optional<double> margin = {};
   /// The smallest coefficient with which it holds at all contact facets, at the best pressing,
   /// rounded up: with this one it holds, and one that is smaller by more than kFrictionAccuracy of
-  /// it does not balance the load. 0: none is needed to balance it. kFrictionLeast where less would do, such as
-  /// between two things that it can press apart. The elastic forces may take more. None: none does,
-  /// nobody asked for it, or nobody needs to as a facet is bonded.
+  /// it does not balance the load. 0: none is needed to balance it. kFrictionLeast where less would
+  /// do, such as between two things that it can press apart. The elastic forces may take more.
+  /// None: none does, nobody asked for it, or nobody needs to as a facet is bonded.
   std::optional<double> friction_needed = {};
   /// The smallest angle by which gravity can turn, in any direction, before it moves, rounded down
   /// by at most kTiltAccuracy of it; 0 where it does not hold as it is. None: it holds whatever the
