@@ -152,7 +152,7 @@ py::dict rigid_body(const verdict::RigidBody& body) {
 py::dict stability(const CheckedStructure& check) {
   const verdict::Assessment& found = check.result.assessment;
   py::dict out = rigid_body(found.simplified);
-  out["is_stable"] = found.is_stable;
+  out["is_stable"] = verdict::known_stability(found);
   out["is_stable_by_model"] =
       found.model.is_settled ? py::object(py::bool_(found.model.is_stable)) : py::none();
   const limit::RigidStability& rigid = found.rigid;

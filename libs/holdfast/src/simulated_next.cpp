@@ -23,8 +23,6 @@ struct Place {
 
 using Places = std::map<base::Cell, Place>;
 
-using ModulesByCell = std::map<base::Cell, std::int32_t>;
-
 RobotEffort effort_of(const sim::SimulationResult& result) {
   return {.time = result.verdict_time, .rounds = result.rounds, .packets = result.packets};
 }
@@ -53,25 +51,8 @@ bool judges_faces(const model::RobotSpec& spec, const model::Robot& robot) {
          spec.floor == model::Touch{};
 }
 
-/// Is the floor there, below a module that rests on it?
-bool is_floor(const model::Robot& robot, const ModulesByCell& cells, const base::Cell& cell) {
-  const base::Cell above = base::neighbour(cell, base::Direction::kPlusZ);
-  const auto found = cells.find(above);
-  return above.z == robot.support_z() && found != cells.end() &&
-         robot.modules()[static_cast<std::size_t>(found->second)].support != model::Support::kFixed;
-}
-
-/// Is a module below, where one that comes would have the floor?
-bool is_above_floor(const model::Robot& robot, const ModulesByCell& cells, const base::Cell& cell) {
-  return cell.z == robot.support_z() &&
-         cells.contains(base::neighbour(cell, base::Direction::kMinusZ));
-}
-
 Places read_places(const model::Robot& robot, const sim::Simulation& simulation) {
-  ModulesByCell cells;
-  for (std::int32_t module = 0; module < simulation.agent_count(); ++module) {
-    cells.emplace(robot.modules()[static_cast<std::size_t>(module)].cell, module);
-  }
+  const model::FloorRule floor(robot);
   Places places;
   for (std::int32_t module = 0; module < simulation.agent_count(); ++module) {
     const base::Cell& cell = robot.modules()[static_cast<std::size_t>(module)].cell;
@@ -79,7 +60,7 @@ Places read_places(const model::Robot& robot, const sim::Simulation& simulation)
       const auto face = static_cast<std::size_t>(direction);
       const base::Cell beyond = base::neighbour(cell, direction);
       const bool is_free = robot.neighbours()[static_cast<std::size_t>(module)][face] < 0;
-      if (is_free && !is_floor(robot, cells, beyond) && !is_above_floor(robot, cells, beyond)) {
+      if (is_free && !floor.bars(beyond)) {
         Place& place = places.try_emplace(beyond, Place{.module = module}).first->second;
         add_face(place, simulation.agent(module).free_face(direction));
       }

@@ -110,10 +110,11 @@ void write_limit(JsonStream& json, const ReportEntry& entry) {
 std::string limit_text(const ReportEntry& entry) {
   const limit::LimitLoad& load = *entry.limit;
   if (load.outcome == Outcome::kUnbounded) {
-    return "  limit load  none: whatever the factor of all loads, some forces would balance them\n";
+    return "  limit load  unbounded: whatever the factor of all loads, some forces would balance "
+           "them\n";
   }
   if (load.outcome == Outcome::kFound && load.high < kNoLoad) {
-    return "  limit load  none: no forces balance these loads, nor any share of them\n";
+    return "  limit load  0: no forces balance these loads, nor any share of them\n";
   }
   std::string text =
       load.outcome == Outcome::kFound

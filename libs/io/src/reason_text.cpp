@@ -119,6 +119,17 @@ std::string load_text(const Reason& reason, Cells cells) {
       return fmt::format("{:.0f} of {} would break; the worst, {}, carries {} of its strength",
                          n[0], counted(n[1], "connection"), connection_text(cells),
                          beside_one(n[3], 4));
+    case ReasonCode::kDisplacedMass:
+      return fmt::format(
+          "stable as a rigid body, but bending moves the centre of mass by {:.3g} mm, {:.3g} mm "
+          "beyond an edge of the support polygon that it is {:.3g} mm inside of unbent: it may "
+          "topple, so nothing is certain",
+          n[0], n[2], n[1]);
+    case ReasonCode::kMassMoves:
+      return fmt::format(
+          "warning: bending moves the centre of mass by {:.3g} mm and leaves {:.3g} mm of its "
+          "margin of {:.3g} mm; loads are those of the unbent robot",
+          n[0], n[2], n[1]);
     case ReasonCode::kNoKnownTension:
       return fmt::format(
           "stable, and no connection is known to be pulled apart: none carries more than {:.1g} of "

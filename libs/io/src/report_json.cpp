@@ -108,7 +108,7 @@ void write_stability(JsonStream& json, const verdict::Assessment& assessment) {
   json.end_object();
   json.key("rigid");
   write_rigid(json, assessment.rigid);
-  json.member("stable", assessment.is_stable);
+  json.member("stable", verdict::known_stability(assessment));
   json.end_object();
 }
 

@@ -22,7 +22,7 @@ constexpr std::size_t kListedCount = 5;
 using Out = std::back_insert_iterator<std::string>;
 
 void write_modules(Out out, const model::Robot& robot) {
-  fmt::format_to(out, "  modules     {} existing, {} planned; {} on the ground, {} fixed\n",
+  fmt::format_to(out, "  modules     {} existing, {} planned; {} supported, {} fixed\n",
                  robot.modules().size() - robot.planned_count(), robot.planned_count(),
                  robot.ground_count(), robot.fixed_count());
 }
@@ -47,19 +47,21 @@ void write_stability(Out out, const model::Robot& robot, const verdict::Assessme
   const verdict::RigidBody& body = assessment.simplified;
   const bool is_doubtful = assessment.verdict == verdict::Verdict::kUndecided;
   // What the model-based check agrees with, or not.
-  bool is_said_stable = assessment.is_stable;
+  const bool is_said_stable = assessment.contact_model == verdict::ContactModel::kBonded
+                                  ? assessment.is_stable
+                                  : assessment.rigid.holds();
   const char* word = assessment.is_stable ? "stable" : is_doubtful ? "not certain" : "unstable";
   if (body.margin_mm) {
     const auto& [a, b] = *body.edge;
     const std::array<double, 4> ends = {a.x, a.y, b.x, b.y};
-    fmt::format_to(out, "  stability   {}, margin {} mm at {}", word,
-                   host::fixed(*body.margin_mm, 2), edge_text(ends));
+    fmt::format_to(out, "  stability   {}, margin {} mm at {}{}", word,
+                   host::fixed(*body.margin_mm, 2), *body.margin_mm < 0 ? "the line of " : "",
+                   edge_text(ends));
   } else if (assessment.stability_rule == verdict::StabilityRule::kHeld) {
     fmt::format_to(out, "  stability   {}, held by a {}", word,
                    robot.fixed_count() > 0 ? "fixed module" : "bonded support");
   } else {
     fmt::format_to(out, "  stability   {}{}", word, rigid_text(assessment.rigid));
-    is_said_stable = assessment.rigid.holds();
   }
   if (!assessment.model.is_settled) {
     fmt::format_to(out, "; the model-based check has no answer\n");

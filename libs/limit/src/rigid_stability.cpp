@@ -38,41 +38,64 @@ Margin find_margin(const ContactCone& cone, const Vector6d& load) {
   return margin;
 }
 
-bool is_balanced(std::vector<ContactPoint> points, std::optional<double> friction,
-                 const Vector6d& load, double gyration_mm) {
+std::vector<ContactPoint> with_friction(std::vector<ContactPoint> points,
+                                        std::optional<double> friction) {
   for (ContactPoint& point : points) {
     point.friction = friction;
   }
-  const ContactCone cone(points, gyration_mm);
+  return points;
+}
+
+bool is_balanced(const std::vector<ContactPoint>& points, std::optional<double> friction,
+                 const Vector6d& load, double gyration_mm) {
+  const ContactCone cone(with_friction(points, friction), gyration_mm);
   return ContactCone::is_nothing(cone.remainder(load).wrench, load);
 }
 
-/// More friction never balances less, so by halving.
+/// Balanced with something to spare, as assess_rigid() wants it of what holds.
+bool is_held(const std::vector<ContactPoint>& points, std::optional<double> friction,
+             const Vector6d& load, double gyration_mm) {
+  if (!is_balanced(points, friction, load, gyration_mm)) {
+    return false;
+  }
+  const Margin margin =
+      find_margin(ContactCone(with_friction(points, friction), gyration_mm), load);
+  return margin.is_settled && margin.share > kMarginTie;
+}
+
+/// More friction never balances less, so by halving; then as much more as the body needs to hold
+/// with something to spare. Where it takes large forces between things that are pressed apart,
+/// rounding leaves few digits of where that begins.
 std::optional<double> find_friction_needed(const std::vector<ContactPoint>& points,
                                            const Vector6d& load, double gyration_mm) {
-  const auto holds = [&](double friction) {
+  const auto balances = [&](double friction) {
     return is_balanced(points, friction, load, gyration_mm);
   };
-  if (!is_balanced(points, std::nullopt, load, gyration_mm) || !holds(kFrictionMax)) {
+  if (!is_balanced(points, std::nullopt, load, gyration_mm) || !balances(kFrictionMax)) {
     return std::nullopt;
   }
-  if (holds(0)) {
+  if (balances(0)) {
     return 0;
   }
   double low = 0;
   double high = 1;
-  while (!holds(high)) {
+  while (!balances(high)) {
     low = high;
     high *= 2;
   }
   constexpr double kDigits = 1e-10;
-  while (high - low > kDigits * high) {
+  while (high > kFrictionLeast && high - low > kDigits * high) {
     const double middle = (low + high) / 2;
-    (holds(middle) ? high : low) = middle;
+    (balances(middle) ? high : low) = middle;
   }
-  // Between two planes the least friction holds if they are pressed apart without limit.
-  constexpr double kFrictionTie = 1e-5;
-  return high < kFrictionTie ? 0 : high;
+  high = std::max(high, kFrictionLeast);
+  constexpr double kMore[] = {1e-7, 1e-6, 1e-5, 1e-4, kFrictionAccuracy};
+  for (const double more : kMore) {
+    if (is_held(points, high * (1 + more), load, gyration_mm)) {
+      return high * (1 + more);
+    }
+  }
+  return std::nullopt;
 }
 
 Vector6d wrench_of(const BodyLoad& load) {

@@ -43,7 +43,9 @@ class Tilt {
     if (!is_settled_ || !(angle_ < std::numbers::pi)) {
       return std::nullopt;
     }
-    return angle_ * 180 / std::numbers::pi;
+    // The border may be that much nearer than its planes, by what was left out between two rays and
+    // by the rounding of each; an angle shrinks no more than its tangent.
+    return angle_ * std::min(1 - kRoundingShare, chord_ / nearest_) * 180 / std::numbers::pi;
   }
 
  private:
@@ -100,6 +102,7 @@ class Tilt {
     constexpr int kFirst = 4;
     constexpr double kQuarter = std::numbers::pi / 2;
     nearest_ = std::numeric_limits<double>::infinity();
+    chord_ = nearest_;
     const Hit first = shoot(0);
     Hit before = first;
     for (int i = 1; i <= kFirst; ++i) {
@@ -137,26 +140,37 @@ class Tilt {
   /// Whether the border between two rays, less than half a turn apart, comes no nearer than the
   /// nearest line: as the set is convex, it is not within the triangle of both ends and the origin,
   /// nor, where one ray never ends, within the strip along it.
-  bool is_closed(const Hit& a, const Hit& b) const {
+  bool is_closed(const Hit& a, const Hit& b) {
     constexpr double kTie = 1e-9;
     // Cones of friction have no edges; how much nearer they may be than what was found.
     constexpr double kCurved = 1e-4;
     const double near_enough = nearest_ * (1 - kCurved);
     if (a.is_none() || b.is_none()) {
-      return std::min(a.distance, b.distance) >= near_enough;
+      const double distance = std::min(a.distance, b.distance);
+      return closes(distance, near_enough);
     }
     const Eigen::Vector2d from = a.place();
     const Eigen::Vector2d chord = b.place() - from;
     const double part = std::clamp(-from.dot(chord) / chord.squaredNorm(), 0.0, 1.0);
-    if (!(chord.norm() > 0) || (from + part * chord).norm() >= near_enough) {
+    // Both on one line.
+    if (std::abs(a.normal.dot(b.place()) - a.offset) <= kTie * std::abs(a.offset) ||
+        std::abs(b.normal.dot(from) - b.offset) <= kTie * std::abs(b.offset)) {
       return true;
     }
-    // Both on one line.
-    return std::abs(a.normal.dot(b.place()) - a.offset) <= kTie * std::abs(a.offset) ||
-           std::abs(b.normal.dot(from) - b.offset) <= kTie * std::abs(b.offset);
+    return !(chord.norm() > 0) || closes((from + part * chord).norm(), near_enough);
+  }
+
+  /// Whether this is near enough; then the border may be as near as that.
+  bool closes(double distance, double near_enough) {
+    if (distance < near_enough) {
+      return false;
+    }
+    chord_ = std::min(chord_, distance);
+    return true;
   }
 
   static constexpr int kDepthMax = 24;
+  static constexpr double kRoundingShare = 1e-9;
 
   const ContactCone& cone_;
   Vector3d weight_;
@@ -166,6 +180,7 @@ class Tilt {
   Vector3d other_;
   Vector3d centre_;
   double nearest_ = 0;  ///< Of the lines in this slice, in weights.
+  double chord_ = 0;    ///< No part of the border that closed a sector is nearer than this.
   double angle_ = std::numbers::pi;
   bool is_settled_ = true;
 };

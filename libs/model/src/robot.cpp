@@ -337,6 +337,22 @@ std::optional<std::string> Robot::take_loads(const RobotSpec& spec, const CellIn
   return std::nullopt;
 }
 
+std::optional<std::int32_t> Robot::barring_level() const {
+  const base::Direction down = base::down(lattice_);
+  const bool does_any_rest =
+      has_floor_ && std::ranges::any_of(facets_, [&](const Facet& facet) {
+        return facet.direction == down && modules_[base::at(facet.module)].cell.z == support_z_;
+      });
+  return does_any_rest ? std::optional(support_z_) : std::nullopt;
+}
+
+FloorRule::FloorRule(const Robot& robot) : level_(robot.barring_level()) {
+  const auto is_below = [&](const Module& module) { return module.cell.z < robot.support_z(); };
+  if (robot.has_floor() && std::ranges::any_of(robot.modules(), is_below)) {
+    level_of_none_ = robot.support_z();
+  }
+}
+
 double load_ratio_per_energy_norm(const Robot& robot) {
   const auto beam = mechanics::beam_stiffness(beam_section(robot.material()));
   const double bend = std::max(beam.bend_x, beam.bend_y) / 4;

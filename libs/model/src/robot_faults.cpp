@@ -270,37 +270,26 @@ std::optional<std::string> find_connection_fault(const Connections& connections,
 
 namespace {
 
-bool sinks(const base::Lattice& lattice, base::Direction direction) {
-  return lattice.steps[base::at(base::index(direction))].z < 0;
-}
-
-/// Nobody may be below what rests on a floor but what hangs from a fixed module. Where a lattice
-/// leans that is any neighbour of the layer below: it would have to reach through the floor.
+/// Where a module rests on a floor, that bars all: nobody may be below it, not even what hangs from
+/// a fixed module.
 std::optional<std::string> find_module_below_floor(const Robot& robot) {
-  const auto floor = base::down(robot.lattice());
-  if (!robot.has_floor()) {
+  const auto level = robot.barring_level();
+  if (!level) {
     return std::nullopt;
   }
-  for (const Facet& facet : robot.facets()) {
-    const Cell& cell = robot.modules()[base::at(facet.module)].cell;
-    if (facet.direction != floor || cell.z != robot.support_z()) {
-      continue;
-    }
-    for (const base::Direction direction : base::directions(robot.lattice())) {
-      const std::int32_t below =
-          robot.neighbours()[base::at(facet.module)][base::at(base::index(direction))];
-      if (below == Robot::kNoNeighbour || !sinks(robot.lattice(), direction)) {
-        continue;
-      }
-      return fmt::format(
-          "the module {} is {}below {}, which rests on the ground at the support level "
-          "z = {}; allowed below that level is only what hangs from a fixed module: lower the "
-          "support level or fix {}",
-          text(robot.modules()[base::at(below)].cell), direction == floor ? "directly " : "",
-          text(cell), robot.support_z(), text(cell));
-    }
+  const auto is_below = [&](const Module& module) { return module.cell.z < *level; };
+  const auto below = std::ranges::find_if(robot.modules(), is_below);
+  if (below == robot.modules().end()) {
+    return std::nullopt;
   }
-  return std::nullopt;
+  const auto standing = std::ranges::find_if(robot.modules(), [&](const Module& module) {
+    return module.cell.z == *level && module.support != Support::kFixed;
+  });
+  return fmt::format(
+      "the module {} is below the ground, on which {} rests at the support level z = {}; allowed "
+      "below that level are modules only where none rests on it: lower the support level, or fix "
+      "what is on it",
+      text(below->cell), text(standing->cell), *level);
 }
 
 /// What would hold a robot that nothing holds.

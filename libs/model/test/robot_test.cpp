@@ -185,7 +185,7 @@ TEST(Robot, releases_only_connections_and_each_once) {
   expect_error({.existing = {{0, 0, 0}, {1, 0, 0}, {1, 0, -1}, {0, 0, -1}},
                 .fixed = {{1, 0, 0}},
                 .released = {{Cell{0, 0, 0}, Cell{0, 0, -1}}}},
-               {"(0,0,-1) is directly below (0,0,0)"});
+               {"is below the ground, on which (0,0,0) rests"});
 }
 
 TEST(Robot, rests_on_its_lowest_layer_and_wherever_it_is_fixed) {
@@ -211,7 +211,7 @@ TEST(Robot, rests_on_its_lowest_layer_and_wherever_it_is_fixed) {
 TEST(Robot, may_hang_below_the_support_level_from_a_fixed_module) {
   const RobotSpec hook = {
       .existing = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {2, 0, 1}, {2, 0, 0}, {2, 0, -1}},
-      .fixed = {{2, 0, 0}}};
+      .fixed = {{0, 0, 0}, {2, 0, 0}}};
   EXPECT_TRUE(Robot::create(hook).has_value());
 }
 
@@ -269,16 +269,22 @@ TEST(Robot, is_held_by_the_ground_or_a_fixed_module) {
   EXPECT_TRUE(Robot::create({.existing = high, .support_z = 2}).has_value());
 }
 
-TEST(Robot, has_nothing_beneath_its_feet) {
-  expect_error({.existing = {{0, 0, 0}, {0, 0, -1}}},
-               {"module (0,0,-1) is directly below (0,0,0)", "rests on the ground",
-                "support level z = 0", "allowed", "hangs from a fixed module"});
-  expect_error({.existing = {{0, 0, 0}}, .planned = {{0, 0, -1}}},
-               {"module (0,0,-1) is directly below (0,0,0)"});
+TEST(Robot, has_nothing_below_a_floor_that_it_rests_on) {
+  expect_error(
+      {.existing = {{0, 0, 0}, {0, 0, -1}}},
+      {"module (0,0,-1) is below the ground", "(0,0,0) rests", "support level z = 0", "allowed"});
+  expect_error({.existing = {{0, 0, 0}}, .planned = {{0, 0, -1}}}, {"module (0,0,-1) is below"});
+  // Not even what hangs from a fixed module beside one that rests there.
+  const std::vector<Cell> row = {{0, 0, 0}, {1, 0, 0}, {0, 0, -1}};
+  expect_error({.existing = row, .fixed = {{0, 0, 0}}},
+               {"module (0,0,-1) is below the ground", "(1,0,0) rests"});
+  EXPECT_TRUE(Robot::create({.existing = row, .fixed = {{0, 0, 0}, {1, 0, 0}}}).has_value());
+  EXPECT_TRUE(Robot::create({.existing = row, .fixed = {{0, 0, 0}}, .support_z = std::nullopt})
+                  .has_value());
   // Where no direction is straight down the floor is in the way all the same.
   for (const base::Lattice& lattice : {base::kFaceCentred, base::kHexagonal}) {
     expect_error({.existing = {{0, 0, 0}, {1, 0, 0}}, .planned = {{0, 0, -1}}, .lattice = lattice},
-                 {"module (0,0,-1) is below (0,0,0)", "rests on the ground"});
+                 {"module (0,0,-1) is below the ground"});
     EXPECT_TRUE(Robot::create(
                     {.existing = {{0, 0, 0}, {0, 0, -1}}, .fixed = {{0, 0, 0}}, .lattice = lattice})
                     .has_value());

@@ -42,7 +42,8 @@ SiteFinder::SiteFinder(const model::Robot& robot, const model::RobotSpec& spec)
       spec_(spec),
       index_(index_of(robot)),
       obstacles_(spec.obstacles),
-      has_polygon_(verdict::is_on_flat_floor(robot)) {}
+      has_polygon_(verdict::is_on_flat_floor(robot)),
+      floor_rule_(robot) {}
 
 Site SiteFinder::find(const Cell& cell) const {
   Site site{.cell = cell};
@@ -58,7 +59,7 @@ Site SiteFinder::find(const Cell& cell) const {
       site.links.push_back({.host = base::at(host), .direction = base::opposite(direction)});
     }
   }
-  if (is_taken || site.links.empty() || is_below_floor(cell)) {
+  if (is_taken || site.links.empty() || floor_rule_.bars(cell)) {
     site.kind = Site::Kind::kImpossible;
     return site;
   }
@@ -81,28 +82,6 @@ bool SiteFinder::touches_obstacle(const Cell& cell) const {
   }
   for (const base::Direction direction : base::directions(robot_.lattice())) {
     if (obstacles_.find(base::neighbour(robot_.lattice(), cell, direction)) != CellIndex::kNone) {
-      return true;
-    }
-  }
-  return false;
-}
-
-/// Whether the cell is below a module that rests on the floor, or on the floor with a module below:
-/// model::Robot::create() refuses both.
-bool SiteFinder::is_below_floor(const Cell& cell) const {
-  const base::Lattice& lattice = robot_.lattice();
-  const bool may_be_below = robot_.has_floor() && cell.z == robot_.support_z() - 1;
-  const bool may_be_above = robot_.has_floor() && cell.z == robot_.support_z();
-  if (!may_be_below && !may_be_above) {
-    return false;
-  }
-  for (const base::Direction direction : base::directions(lattice)) {
-    const std::int32_t step = lattice.steps[base::at(base::index(direction))].z;
-    const bool is_asked = step == (may_be_above ? -1 : 1);
-    const std::int32_t other =
-        is_asked ? index_.find(base::neighbour(lattice, cell, direction)) : CellIndex::kNone;
-    if (other != CellIndex::kNone &&
-        (may_be_above || robot_.modules()[base::at(other)].support != model::Support::kFixed)) {
       return true;
     }
   }

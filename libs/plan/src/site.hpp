@@ -45,7 +45,6 @@ class SiteFinder {
 
  private:
   bool touches_obstacle(const base::Cell& cell) const;
-  bool is_below_floor(const base::Cell& cell) const;
   bool is_polygon_kept_by(const Site& site) const;
 
   const model::Robot& robot_;
@@ -53,6 +52,7 @@ class SiteFinder {
   model::CellIndex index_;
   model::ObstacleIndex obstacles_;
   bool has_polygon_ = false;
+  model::FloorRule floor_rule_;
 };
 
 }  // namespace holdfast::plan

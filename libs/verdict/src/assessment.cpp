@@ -168,6 +168,7 @@ Assessment conclude(const model::Robot& robot, Assessment assessment,
   if (assessment.equilibrium.outcome == Outcome::kSettled) {
     assess_connections(robot, options.thread_count, assessment);
     assessment.gaps = find_open_gaps(robot, assessment.equilibrium, options.ranks());
+    assessment.lean = find_lean(robot, assessment, options.part);
   }
   decide(robot, options.part, assessment);
   return assessment;

@@ -107,6 +107,12 @@ void decide_stable(const model::Robot& robot, const model::RobotPart* part,
   } else if (breaks(assessment.load_ratio_range.low)) {
     assessment.verdict = Verdict::kOverload;
     assessment.reasons.push_back(breaking_reason(assessment));
+  } else if (assessment.lean && assessment.lean->margin_mm <= 0) {
+    assessment.is_stable = false;
+    assessment.reasons.push_back(
+        {.code = ReasonCode::kDisplacedMass,
+         .numbers = {assessment.lean->shift_mm, *assessment.simplified.margin_mm,
+                     -assessment.lean->margin_mm}});
   } else {
     assessment.verdict = Verdict::kSafe;
     assessment.reasons.push_back(holding_reason(assessment));
@@ -132,7 +138,7 @@ void add_contact_remarks(Assessment& assessment) {
     return;
   }
   if (assessment.stability_rule != StabilityRule::kContactForces && assessment.model.is_settled &&
-      assessment.model.is_stable != assessment.is_stable) {
+      assessment.model.is_stable != assessment.rigid.holds()) {
     reasons.push_back(
         {.code = ReasonCode::kModelDisagrees, .numbers = {assessment.model.is_stable ? 1.0 : 0.0}});
   }
@@ -214,6 +220,13 @@ void add_load_remarks(const model::Robot& robot, const model::RobotPart* part,
                                               static_cast<double>(assessment.gaps->worst),
                                               assessment.gaps->gap_mm, assessment.gaps->limit_mm},
                                   .cells = gap_cells(*assessment.gaps, part)});
+  }
+  const double margin = assessment.simplified.margin_mm.value_or(0);
+  if (assessment.lean && assessment.lean->margin_mm > 0 &&
+      margin - assessment.lean->margin_mm > kLeanShare * margin) {
+    assessment.reasons.push_back(
+        {.code = ReasonCode::kMassMoves,
+         .numbers = {assessment.lean->shift_mm, margin, assessment.lean->margin_mm}});
   }
   const bool has_payloads = host::any(model::ranks_of(part), robot.has_payloads());
   if (has_payloads && assessment.worst) {

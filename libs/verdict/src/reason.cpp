@@ -62,7 +62,9 @@ const char* name(ReasonCode code) {
                                                                        "carrier_breaks",
                                                                        "carrier_holds",
                                                                        "in_pieces",
-                                                                       "states_disagree"};
+                                                                       "states_disagree",
+                                                                       "displaced_mass",
+                                                                       "mass_moves"};
   return kNames[static_cast<std::size_t>(code)];
 }
 

@@ -3,6 +3,7 @@
 #include "stability.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "holdfast/limit/robot.hpp"
+#include "holdfast/mechanics/beam.hpp"
 #include "holdfast/mechanics/support_corners.hpp"
 #include "holdfast/model/lattice_beam.hpp"
 #include "holdfast/model/mass.hpp"
@@ -51,9 +53,41 @@ Heights heights(const model::Robot& robot, const model::RobotPart* part) {
           .centre_of_mass_mm = model::mass_of(robot, part).centre_mm[2] - floor_mm};
 }
 
-/// On a flat floor gravity passes the nearest edge of the polygon first.
+/// The least and the most coefficient of friction of any facet; one that cannot slip has no limit.
+std::array<double, 2> friction_range(const model::Robot& robot, const model::RobotPart* part) {
+  constexpr double kNoSlip = std::numeric_limits<double>::infinity();
+  double least = kNoSlip;
+  double most = 0;
+  for (const model::Facet& facet : robot.facets()) {
+    least = std::min(least, facet.touch.friction.value_or(kNoSlip));
+    most = std::max(most, facet.touch.friction.value_or(kNoSlip));
+  }
+  host::Ranks* const ranks = model::ranks_of(part);
+  return {-host::max(ranks, -least), host::max(ranks, most)};
+}
+
+/// By how far gravity can turn over a level floor. With one friction everywhere the body tips over
+/// the nearest edge or slides as a whole, whichever comes first: while the weight meets the floor
+/// within the polygon, its share across can be given to the facets as they press. With several, it
+/// may also turn about where it slips last.
+std::optional<double> floor_tilt_deg(const model::Robot& robot, double margin_mm, double height_mm,
+                                     const model::RobotPart* part, bool has_figures) {
+  const auto [least, most] = friction_range(robot, part);
+  if (least != most && !has_figures) {
+    return std::nullopt;
+  }
+  const double tips = std::atan2(margin_mm, height_mm) * 180 / std::numbers::pi;
+  const double slides = std::atan(most) * 180 / std::numbers::pi;
+  if (least == most) {
+    return std::min(tips, slides);
+  }
+  const auto turned = limit::assess_rigid(robot, part, true).tilt_margin_deg;
+  return turned ? std::optional(std::min(tips, *turned)) : std::nullopt;
+}
+
+/// On a flat floor the polygon decides whether the weight is held, whatever the friction.
 limit::RigidStability floor_stability(const model::Robot& robot, const RigidBody& body,
-                                      const model::RobotPart* part) {
+                                      const model::RobotPart* part, bool has_figures) {
   using limit::RigidAnswer;
   limit::RigidStability rigid;
   const auto [floor_mm, height_mm] = heights(robot, part);
@@ -64,7 +98,8 @@ limit::RigidStability floor_stability(const model::Robot& robot, const RigidBody
   if (margin > 0) {
     rigid.friction_needed = 0;
   }
-  rigid.tilt_margin_deg = margin > 0 ? std::atan2(margin, height_mm) * 180 / std::numbers::pi : 0;
+  rigid.tilt_margin_deg =
+      margin > 0 ? floor_tilt_deg(robot, margin, height_mm, part, has_figures) : 0;
   if (margin < 0 && body.edge) {
     const auto& [from, to] = *body.edge;
     const Vector3 axis = {to.x - from.x, to.y - from.y, 0};
@@ -151,6 +186,38 @@ bool holds_by_cube_corners(const model::Robot& robot,
   return corners.stable;
 }
 
+/// How far what the facets carry may be off, N: rounding, as a share of the largest of all, and
+/// what the iteration's error in the energy norm can do to the springs of one.
+class FacetErrors {
+ public:
+  FacetErrors(const model::Robot& robot, const Equilibrium& equilibrium,
+              const model::LatticeBeam<double>& beam, const model::RobotPart* part) {
+    double largest = 0;
+    for (std::size_t i = 0; i < robot.facets().size(); ++i) {
+      const auto local = beam.to_local(robot.facets()[i].direction, equilibrium.facet_force[i]);
+      largest = std::max(largest, std::hypot(local[0], local[1], local[2]));
+    }
+    largest = host::max(model::ranks_of(part), largest);
+    const double energy = equilibrium.energy_error;
+    const double spread = std::isfinite(energy) ? kEnergyFactor * energy : 0;
+    const auto springs = mechanics::beam_stiffness(model::beam_section(robot.material()));
+    sideways_n_ =
+        kForceRounding * largest + spread * std::sqrt(std::max(springs.shear_x, springs.shear_y));
+    normal_n_ = kForceRounding * largest + spread * std::sqrt(springs.axial);
+  }
+
+  double sideways_n() const { return sideways_n_; }
+
+  double normal_n() const { return normal_n_; }
+
+ private:
+  /// As of load ratios, which are sums of the same displacements.
+  static constexpr double kForceRounding = 1e-9;
+
+  double sideways_n_ = 0;
+  double normal_n_ = 0;
+};
+
 /// A slip, and by how many times its friction it is too much.
 struct RankedSlip {
   double excess = 1;
@@ -173,7 +240,7 @@ limit::RigidStability rigid_stability(const model::Robot& robot, StabilityRule r
     return {.answer = limit::RigidAnswer::kHolds};
   }
   if (rule == StabilityRule::kPolygon) {
-    return floor_stability(robot, body, part);
+    return floor_stability(robot, body, part, has_figures);
   }
   return limit::assess_rigid(robot, part, has_figures);
 }
@@ -196,9 +263,51 @@ bool do_states_hold(const model::Robot& robot, std::span<const mechanics::Contac
                         : holds_by_corners(robot, contact, part);
 }
 
+std::optional<Lean> find_lean(const model::Robot& robot, const Assessment& assessment,
+                              const model::RobotPart* part) {
+  const RigidBody& body = assessment.simplified;
+  if (assessment.stability_rule != StabilityRule::kPolygon || !body.margin_mm ||
+      *body.margin_mm <= 0 || assessment.contact_model == ContactModel::kBonded) {
+    return std::nullopt;
+  }
+  const auto& displacement = assessment.equilibrium.displacement;
+  std::array<double, 3> moment{};  // Of x and y, kg mm; and the mass, kg.
+  const auto add = [&](double mass_kg, double x, double y) {
+    moment[0] += mass_kg * x;
+    moment[1] += mass_kg * y;
+    moment[2] += mass_kg;
+  };
+  for (std::size_t i = 0; i < model::own_module_count(robot, part); ++i) {
+    add(robot.mass(i), displacement[i][0], displacement[i][1]);
+  }
+  for (const model::CarriedMass& carried : robot.carried()) {
+    const auto carrier = std::ranges::find(robot.modules(), carried.carrier, &model::Module::cell);
+    const auto& u = displacement[static_cast<std::size_t>(carrier - robot.modules().begin())];
+    const auto& arm = carried.offset_mm;
+    add(carried.mass_kg, u[0] + u[4] * arm[2] - u[5] * arm[1],
+        u[1] + u[5] * arm[0] - u[3] * arm[2]);
+  }
+  for (double& sum : moment) {
+    sum = host::sum(model::ranks_of(part), sum);
+  }
+  const double x = moment[0] / moment[2];
+  const double y = moment[1] / moment[2];
+  Lean lean{.shift_mm = std::hypot(x, y), .margin_mm = std::numeric_limits<double>::infinity()};
+  for (std::size_t i = 0; i < body.polygon.size(); ++i) {
+    const PlanPoint& a = body.polygon[i];
+    const PlanPoint& b = body.polygon[(i + 1) % body.polygon.size()];
+    const double along = std::hypot(b.x - a.x, b.y - a.y);
+    const double turn = (b.x - a.x) * (body.centre_of_mass.y + y - a.y) -
+                        (b.y - a.y) * (body.centre_of_mass.x + x - a.x);
+    lean.margin_mm = std::min(lean.margin_mm, turn / along);
+  }
+  return lean;
+}
+
 std::optional<Slip> find_slip(const model::Robot& robot, const Equilibrium& equilibrium,
                               const model::RobotPart* part) {
   const model::LatticeBeam<double> beam(model::beam_section(robot.material()), robot.lattice());
+  const FacetErrors errors(robot, equilibrium, beam, part);
   Slip worst;
   double excess_max = 1;
   for (std::size_t i = 0; i < robot.facets().size(); ++i) {
@@ -208,12 +317,13 @@ std::optional<Slip> find_slip(const model::Robot& robot, const Equilibrium& equi
     }
     const auto local = beam.to_local(facet.direction, equilibrium.facet_force[i]);
     const double sideways = std::hypot(local[0], local[1]);
-    const double excess = sideways / (std::abs(local[2]) * *facet.touch.friction);
-    if (sideways > 0 && excess > excess_max) {
+    const double mu = *facet.touch.friction;
+    const double certain = sideways - errors.sideways_n() - mu * errors.normal_n();
+    const double excess = certain / (std::abs(local[2]) * mu);
+    if (certain > 0 && excess > excess_max) {
       excess_max = excess;
-      worst = {.module = base::at(facet.module),
-               .friction = *facet.touch.friction,
-               .ratio = sideways / std::abs(local[2])};
+      worst = {
+          .module = base::at(facet.module), .friction = mu, .ratio = sideways / std::abs(local[2])};
     }
   }
   if (part != nullptr) {

@@ -29,8 +29,13 @@ ModelStability model_stability(const model::Robot& robot, const solver::Equilibr
 bool do_states_hold(const model::Robot& robot, std::span<const mechanics::ContactState> contact,
                     const model::RobotPart* part);
 
+/// Where bending takes the centre of mass of a robot that the support polygon holds; none for any
+/// other.
+std::optional<Lean> find_lean(const model::Robot& robot, const Assessment& assessment,
+                              const model::RobotPart* part);
+
 /// The facet whose sideways force exceeds its friction most, as a share of what it presses with
-/// times the coefficient; none if none does.
+/// times the coefficient; none if none does by more than its forces may be off.
 std::optional<Slip> find_slip(const model::Robot& robot, const solver::Equilibrium& equilibrium,
                               const model::RobotPart* part);
 

@@ -69,13 +69,15 @@ struct RigidStability {
   /// the load is from what contacts can balance, as a share of it. None: bonded, pressed from all
   /// sides, or no load.
   std::optional<double> margin = {};
-  /// The smallest coefficient that would do at all contact facets, at the best pressing; 0: none is
-  /// needed, or however little does, between two things that it can press apart. The elastic forces
-  /// may take more. None: none does, nobody asked for it, or nobody needs to as a facet is bonded.
+  /// The smallest coefficient with which it holds at all contact facets, at the best pressing,
+  /// rounded up: with this one it holds, and one that is smaller by more than kFrictionAccuracy of
+  /// it does not balance the load. 0: none is needed to balance it. kFrictionLeast where less would
+  /// do, such as between two things that it can press apart. The elastic forces may take more.
+  /// None: none does, nobody asked for it, or nobody needs to as a facet is bonded.
   std::optional<double> friction_needed = {};
-  /// The smallest angle by which gravity can turn, in any direction, before it moves; 0 where it
-  /// does not hold as it is. None: it holds whatever the direction, there is no weight, or nobody
-  /// asked for it.
+  /// The smallest angle by which gravity can turn, in any direction, before it moves, rounded down
+  /// by at most kTiltAccuracy of it; 0 where it does not hold as it is. None: it holds whatever the
+  /// direction, there is no weight, or nobody asked for it.
   std::optional<double> tilt_margin_deg = {};
   /// None where it holds, or nothing says in which direction it would go.
   std::optional<Motion> motion = {};
@@ -85,6 +87,13 @@ struct RigidStability {
 
 /// Margins below this count as none: rounding.
 inline constexpr double kMarginTie = 1e-9;
+
+/// Of the friction needed and of the tilt, as shares of them. Both are bounds from the safe side.
+inline constexpr double kFrictionAccuracy = 1e-3;
+inline constexpr double kTiltAccuracy = 2e-4;
+
+/// Coefficients of friction below this are not told from it, but for 0.
+inline constexpr double kFrictionLeast = 1e-2;
 
 /// Coefficients of friction beyond this are not looked at.
 inline constexpr double kFrictionMax = 1000;

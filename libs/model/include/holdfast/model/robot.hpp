@@ -216,6 +216,10 @@ class Robot {
   /// Void without a floor.
   std::int32_t support_z() const { return support_z_; }
 
+  /// The floor's level, below which no module may be, as one rests on the floor; none where none
+  /// does: fixed modules may be in its layer and beside its end.
+  std::optional<std::int32_t> barring_level() const;
+
   std::size_t planned_count() const { return planned_count_; }
 
   std::size_t ground_count() const { return facets_.size(); }
@@ -278,6 +282,21 @@ class Robot {
   std::size_t fixed_count_ = 0;
   std::size_t released_count_ = 0;
   bool has_bonded_facets_ = false;
+};
+
+/// In which cells the floor lets no further module be: Robot::create() refuses one below a floor
+/// that another rests on, and one on a floor that another is below.
+class FloorRule {
+ public:
+  explicit FloorRule(const Robot& robot);
+
+  bool bars(const base::Cell& cell) const {
+    return (level_ && cell.z < *level_) || (level_of_none_ && cell.z == *level_of_none_);
+  }
+
+ private:
+  std::optional<std::int32_t> level_;          ///< None may be below.
+  std::optional<std::int32_t> level_of_none_;  ///< None may be there.
 };
 
 /// The most by which an error e of the displacements can change any load ratio, as a share of its

@@ -59,6 +59,15 @@ struct OpenGaps {
   std::array<base::Cell, 2> ends = {};  ///< Of that connection.
 };
 
+/// Where bending takes the centre of mass, in plan, by the displacements of the equilibrium.
+struct Lean {
+  double shift_mm = 0;   ///< By how far it moves.
+  double margin_mm = 0;  ///< Its smallest distance to the line of an edge then, positive inside.
+};
+
+/// Bending that takes more than this share of the margin is worth a warning.
+inline constexpr double kLeanShare = 0.1;
+
 /// Of a robot of which this is a part: what all ranks' connections are together.
 struct WholeLoads {
   std::size_t connection_count = 0;
@@ -126,6 +135,7 @@ struct Assessment {
   std::optional<std::size_t> worst;
   std::vector<std::size_t> broken;  ///< Indices of connections at 1 or more, worst first.
   std::optional<OpenGaps> gaps;     ///< None if no gap is too wide.
+  std::optional<Lean> lean;         ///< None where the polygon does not decide, or nothing holds.
   /// All loads could grow by this factor before the first connection breaks; none without `worst`.
   std::optional<double> weight_factor;
   LoadRange load_ratio_range;  ///< Void where load_ratio_max is.
@@ -153,6 +163,12 @@ inline bool breaks(double load_ratio) { return load_ratio >= 1 - kLoadRatioTie; 
 /// is pull down. Then the exact law is asked as well.
 bool has_pulling_facets(const model::Robot& robot, const Assessment& assessment,
                         const model::RobotPart* part = nullptr);
+
+/// Whether it stays where it is, as far as that is known: none where the verdict hangs on it.
+inline std::optional<bool> known_stability(const Assessment& assessment) {
+  const bool is_open = !assessment.is_stable && assessment.verdict == Verdict::kUndecided;
+  return is_open ? std::nullopt : std::optional(assessment.is_stable);
+}
 
 /// What the rigid body says of a robot, and nothing else: no verdict, no reasons. On supports
 /// anywhere the tilt and the friction needed only if asked for.

@@ -52,9 +52,13 @@ enum class ReasonCode : std::uint8_t {
   kCarrierHolds,   ///< It is the worst of all: its load ratio.
   kInPieces,       ///< The robot is, each of which is judged by itself: how many.
   kStatesDisagree,  ///< It falls in other states that the paper's contact law allows.
+  /// Bending takes the centre of mass out of the support polygon: how far it moves, mm, its margin
+  /// without that, and how far beyond the edge it is.
+  kDisplacedMass,
+  kMassMoves,  ///< By much of its margin: how far, mm, the margin, and what is left of it.
 };
 
-inline constexpr int kReasonCodeCount = static_cast<int>(ReasonCode::kStatesDisagree) + 1;
+inline constexpr int kReasonCodeCount = static_cast<int>(ReasonCode::kMassMoves) + 1;
 
 /// One reason for a verdict, as data. io::reason_text() makes a sentence of it.
 struct Reason {

@@ -1,0 +1,297 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Robots on level floors with friction: how far gravity may turn, what slips, and what leans.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "general_robot.hpp"
+#include "holdfast/base/rng.hpp"
+#include "holdfast/verdict/assessment.hpp"
+#include "seeds.hpp"
+
+namespace holdfast::verdict {
+namespace {
+
+using base::Cell;
+using model::RobotSpec;
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+/// Gravity turned by an angle out of straight down, towards a direction in plan.
+RobotSpec tilted(RobotSpec spec, double degrees, double towards) {
+  const double g = spec.material.gravity_m_s2;
+  const double across = g * std::sin(degrees * kDegree);
+  spec.gravity_m_s2 = {across * std::cos(towards), across * std::sin(towards),
+                       -g * std::cos(degrees * kDegree)};
+  return spec;
+}
+
+bool holds(const RobotSpec& spec) {
+  return assess_rigidly(model::Robot::create(spec).value(), nullptr, false).rigid.holds();
+}
+
+double tilt_of(const RobotSpec& spec) {
+  return *assess_rigidly(model::Robot::create(spec).value()).rigid.tilt_margin_deg;
+}
+
+RobotSpec tower(int height, double friction) {
+  RobotSpec spec{.floor = {.friction = friction}};
+  for (int z = 0; z < height; ++z) {
+    spec.existing.push_back({0, 0, z});
+  }
+  return spec;
+}
+
+/// A cube slides at atan(mu), a tower of n tips at atan(1 / n).
+TEST(TiltOnAFloor, is_the_smaller_of_sliding_and_tipping) {
+  for (const double friction : {0.0, 0.1, 0.3, 1.0, 5.0}) {
+    for (const int height : {1, 2, 5, 20}) {
+      const double expected = std::atan(std::min(friction, 1.0 / height)) / kDegree;
+      EXPECT_NEAR(tilt_of(tower(height, friction)), expected, 1e-9) << friction << ' ' << height;
+    }
+  }
+  const RobotSpec on_obstacle{
+      .existing = {{0, 0, 0}},
+      .support_z = std::nullopt,
+      .obstacles = {{.from = {}, .to = {}, .cells = {{0, 0, -1}}, .touch = {.friction = 0.3}}}};
+  EXPECT_NEAR(tilt_of(on_obstacle), std::atan(0.3) / kDegree, 1e-9);
+}
+
+/// Beside the cone of contact forces, which knows no polygon: tilted by a hair less in any
+/// direction it holds; by a hair more it falls, over its edge or, as it slides, in every direction.
+TEST(TiltOnAFloor, is_where_contact_forces_end) {
+  constexpr double kHair = 1e-4;  // So near to a cone's side its margin is known.
+  int count = 0;
+  for (int seed = 0; seed < test::campaign(40, 12); ++seed) {
+    for (const base::Lattice& lattice : test::kLattices) {
+      RobotSpec spec =
+          test::on_a_floor(test::general_robot(lattice, static_cast<std::uint64_t>(seed)), false);
+      const double friction = seed % 2 == 0 ? 0.3 : 0.5;
+      spec.floor.friction = friction;
+      const Assessment found = assess_rigidly(model::Robot::create(spec).value());
+      if (!found.rigid.holds()) {
+        continue;
+      }
+      SCOPED_TRACE(::testing::Message() << lattice.direction_count << ", seed " << seed);
+      ++count;
+      const double tilt = *found.rigid.tilt_margin_deg;
+      EXPECT_LE(tilt, std::atan(friction) / kDegree * (1 + 1e-15));
+      const auto& [a, b] = *found.simplified.edge;
+      const double over_edge = std::atan2(a.x - b.x, b.y - a.y);
+      for (int i = 0; i < 8; ++i) {
+        EXPECT_TRUE(holds(tilted(spec, tilt * (1 - kHair), over_edge + i * 45 * kDegree))) << i;
+      }
+      EXPECT_FALSE(holds(tilted(spec, tilt * (1 + kHair), over_edge)));
+    }
+  }
+  EXPECT_GT(count, 10);
+}
+
+/// Where feet differ in friction it lies between those of the least and the most, and is no more
+/// than what holds.
+TEST(TiltOnAFloor, of_several_frictions_is_no_more_than_what_holds) {
+  RobotSpec spec{.support_z = std::nullopt};
+  for (int x = 0; x < 3; ++x) {
+    spec.existing.push_back({x, 0, 0});
+    spec.existing.push_back({x, 1, 0});
+  }
+  spec.obstacles = {
+      {.from = {}, .to = {}, .cells = {{0, 0, -1}, {0, 1, -1}}, .touch = {.friction = 0.1}},
+      {.from = {}, .to = {}, .cells = {{2, 0, -1}, {2, 1, -1}}, .touch = {.friction = 0.5}}};
+  const double tilt = tilt_of(spec);
+  EXPECT_GT(tilt, std::atan(0.1) / kDegree * 1.01);
+  EXPECT_LT(tilt, std::atan(0.5) / kDegree * 0.99);
+  bool does_any_fall = false;
+  for (int i = 0; i < 72; ++i) {
+    EXPECT_TRUE(holds(tilted(spec, tilt * (1 - 1e-8), 5 * i * kDegree))) << i;
+    does_any_fall = does_any_fall || !holds(tilted(spec, tilt * 1.02, 5 * i * kDegree));
+  }
+  EXPECT_TRUE(does_any_fall);
+}
+
+RobotSpec with_all_friction(RobotSpec spec, double friction) {
+  for (model::Obstacle& obstacle : spec.obstacles) {
+    obstacle.touch.friction = friction;
+  }
+  return spec;
+}
+
+/// The friction needed holds, what is smaller by more than its accuracy does not, and the order of
+/// modules changes it by no more than that.
+TEST(FrictionNeeded, is_enough_and_hardly_more) {
+  int count = 0;
+  for (int seed = 0; seed < test::campaign(200, 60); ++seed) {
+    for (const base::Lattice& lattice : test::kLattices) {
+      RobotSpec spec = test::general_robot(lattice, static_cast<std::uint64_t>(seed));
+      const auto robot = model::Robot::create(spec);
+      if (!robot || robot.value().fixed_count() > 0 || robot.value().has_bonded_facets()) {
+        continue;
+      }
+      SCOPED_TRACE(::testing::Message() << lattice.direction_count << ", seed " << seed);
+      const auto needed = assess_rigidly(robot.value()).rigid.friction_needed;
+      std::ranges::reverse(spec.existing);
+      const auto turned = assess_rigidly(model::Robot::create(spec).value()).rigid.friction_needed;
+      EXPECT_EQ(needed.has_value(), turned.has_value());
+      if (!needed || !turned) {
+        continue;
+      }
+      EXPECT_NEAR(*needed, *turned, 2 * limit::kFrictionAccuracy * *needed);
+      std::ranges::reverse(spec.existing);
+      EXPECT_TRUE(*needed == 0 || holds(with_all_friction(spec, *needed)));
+      if (*needed > limit::kFrictionLeast * 1.01) {
+        ++count;
+        const double less = *needed * (1 - 2 * limit::kFrictionAccuracy);
+        EXPECT_FALSE(holds(with_all_friction(spec, less)));
+      }
+    }
+  }
+  EXPECT_GT(count, 5);
+}
+
+/// Two wedges of the file that gave 2.2e-5 or 1.3e-4 by the order of modules.
+TEST(FrictionNeeded, between_what_is_pressed_apart_does_not_depend_on_order) {
+  RobotSpec spec{
+      .existing = {{11, 5, -12}, {11, 5, -13}, {11, 5, -14}},
+      .support_z = std::nullopt,
+      .lattice = base::kHexagonal,
+      .obstacles = {{.from = {}, .to = {}, .cells = {{10, 5, -12}}, .touch = {.friction = 0.4}},
+                    {.from = {}, .to = {}, .cells = {{12, 5, -13}}, .touch = {.friction = 0.4}},
+                    {.from = {}, .to = {}, .cells = {{12, 5, -12}}, .touch = {.friction = 0.2}},
+                    {.from = {}, .to = {}, .cells = {{10, 5, -14}}, .touch = {}}}};
+  std::set<double> found;
+  do {
+    const auto needed = assess_rigidly(model::Robot::create(spec).value()).rigid.friction_needed;
+    ASSERT_TRUE(needed);
+    EXPECT_TRUE(holds(with_all_friction(spec, *needed)));
+    found.insert(*needed);
+  } while (std::ranges::next_permutation(spec.existing).found);
+  EXPECT_LE(*found.rbegin(), *found.begin() * (1 + 2 * limit::kFrictionAccuracy));
+}
+
+/// A layer of modules that all stand, grown at random: each carries its own weight down.
+RobotSpec layer(const base::Lattice& lattice, std::uint64_t seed, std::size_t count) {
+  base::Rng rng(seed);
+  RobotSpec spec{.existing = {{0, 0, 0}}, .lattice = lattice};
+  std::set<Cell> taken = {{0, 0, 0}};
+  while (spec.existing.size() < count) {
+    const Cell from = spec.existing[rng.below(spec.existing.size())];
+    const Cell cell = base::neighbour(lattice, from,
+                                      static_cast<base::Direction>(rng.below(
+                                          static_cast<std::uint64_t>(lattice.direction_count))));
+    if (cell.z == 0 && taken.insert(cell).second) {
+      spec.existing.push_back(cell);
+    }
+  }
+  return spec;
+}
+
+/// Nothing pushes sideways, whatever the scale: what a solver leaves is rounding, and no slip.
+TEST(SmoothFloor, holds_what_nothing_pushes_sideways) {
+  for (int seed = 0; seed < test::campaign(10, 4); ++seed) {
+    for (const base::Lattice& lattice : test::kLattices) {
+      for (const double pitch : {1.0, 40.0, 1000.0}) {
+        const std::size_t count = seed == 0 ? 150 : 2 + static_cast<std::size_t>(seed);
+        RobotSpec spec = layer(lattice, static_cast<std::uint64_t>(seed), count);
+        spec.material.pitch_mm = pitch;
+        spec.material.facet_mm = pitch;
+        for (const double friction : {0.0, 1e-12}) {
+          spec.floor.friction = friction;
+          const Assessment found = assess(model::Robot::create(spec).value());
+          EXPECT_EQ(found.verdict, Verdict::kSafe)
+              << lattice.direction_count << ", seed " << seed << ", pitch " << pitch << ", "
+              << friction << ' ' << name(found.reasons.front().code);
+        }
+      }
+    }
+  }
+}
+
+/// An arch pushes its feet apart.
+TEST(SmoothFloor, does_not_hold_what_is_pushed) {
+  RobotSpec arch{.existing = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {2, 0, 1}, {2, 0, 0}}};
+  arch.floor.friction = 0;
+  const Assessment found = assess(model::Robot::create(arch).value());
+  EXPECT_EQ(found.verdict, Verdict::kUndecided);
+  EXPECT_EQ(found.reasons.front().code, ReasonCode::kMaySlip);
+}
+
+/// The robot of 21 modules whose centre of mass the displacements take from 19.05 to 20.06 mm: the
+/// edge is at 20.
+RobotSpec leaning(double stiffness) {
+  RobotSpec spec;
+  for (int z = 0; z < 15; ++z) {
+    spec.existing.push_back({0, 0, z});
+  }
+  for (const Cell& cell :
+       std::vector<Cell>{{1, 0, 14}, {1, 0, 13}, {2, 0, 13}, {1, 0, 12}, {2, 0, 12}, {3, 0, 12}}) {
+    spec.existing.push_back(cell);
+  }
+  spec.material.elastic_modulus_mpa *= stiffness;
+  return spec;
+}
+
+TEST(DisplacedMass, over_the_edge_is_not_safe) {
+  const Assessment found = assess(model::Robot::create(leaning(1)).value());
+  EXPECT_EQ(found.verdict, Verdict::kUndecided);
+  ASSERT_EQ(found.reasons.front().code, ReasonCode::kDisplacedMass);
+  EXPECT_NEAR(found.reasons.front().numbers[0], 20.06 - 19.05, 0.01);
+  EXPECT_NEAR(found.reasons.front().numbers[1], 20 - 19.05, 0.005);
+  EXPECT_NEAR(found.reasons.front().numbers[2], 20.06 - 20, 0.005);
+  EXPECT_FALSE(known_stability(found).has_value());
+  const auto has_warning = [](const Assessment& assessment) {
+    return std::ranges::count(assessment.reasons, ReasonCode::kMassMoves, &Reason::code);
+  };
+  // Half as far leaves some of the margin, a hundredth as far nearly all.
+  const Assessment stiffer = assess(model::Robot::create(leaning(2)).value());
+  EXPECT_EQ(stiffer.verdict, Verdict::kSafe);
+  EXPECT_EQ(has_warning(stiffer), 1);
+  const Assessment stiff = assess(model::Robot::create(leaning(100)).value());
+  EXPECT_EQ(stiff.verdict, Verdict::kSafe);
+  EXPECT_EQ(has_warning(stiff), 0);
+}
+
+/// Of random robots that are made soft, none is safe whose displaced mass is outside its polygon.
+TEST(DisplacedMass, of_a_safe_robot_is_over_its_polygon) {
+  int left_count = 0;
+  for (int seed = 0; seed < test::campaign(60, 20); ++seed) {
+    for (const base::Lattice& lattice : test::kLattices) {
+      RobotSpec spec =
+          test::on_a_floor(test::general_robot(lattice, static_cast<std::uint64_t>(seed)), false);
+      spec.material.elastic_modulus_mpa = seed % 3 == 0 ? 0.05 : 1;
+      spec.material.strength_vertical_n = 1e6;
+      spec.material.strength_lateral_n = 1e6;
+      const model::Robot robot = model::Robot::create(spec).value();
+      const Assessment found = assess(robot);
+      if (!found.rigid.holds() || found.equilibrium.outcome != solver::Outcome::kSettled) {
+        continue;
+      }
+      PlanPoint mass = found.simplified.centre_of_mass;
+      double kg = 0;
+      for (std::size_t i = 0; i < robot.modules().size(); ++i) {
+        kg += robot.mass(i);
+      }
+      for (std::size_t i = 0; i < robot.modules().size(); ++i) {
+        mass.x += robot.mass(i) / kg * found.equilibrium.displacement[i][0];
+        mass.y += robot.mass(i) / kg * found.equilibrium.displacement[i][1];
+      }
+      bool is_inside = true;
+      const auto& polygon = found.simplified.polygon;
+      for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const auto& a = polygon[i];
+        const auto& b = polygon[(i + 1) % polygon.size()];
+        is_inside &= (b.x - a.x) * (mass.y - a.y) > (b.y - a.y) * (mass.x - a.x);
+      }
+      left_count += is_inside ? 0 : 1;
+      EXPECT_TRUE(is_inside || found.verdict != Verdict::kSafe) << seed;
+    }
+  }
+  EXPECT_GT(left_count, 0);
+}
+
+}  // namespace
+}  // namespace holdfast::verdict
