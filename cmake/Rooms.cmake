@@ -31,7 +31,7 @@ function(holdfast_room name)
   target_compile_features(${target} ${scope} cxx_std_20)
   target_link_libraries(${target} ${scope} ${ROOM_LINKS})
   set_target_properties(${target} PROPERTIES
-    VERIFY_INTERFACE_HEADER_SETS ${HOLDFAST_BUILD_TESTS})
+    VERIFY_INTERFACE_HEADER_SETS "${HOLDFAST_BUILD_TESTS}")
   if(ROOM_SOURCES)
     target_include_directories(${target} PRIVATE src)
     target_link_libraries(${target} PRIVATE ${ROOM_PRIVATE_LINKS})
