@@ -59,7 +59,7 @@ class CheckRun {
  private:
   bool is_many() const { return options_.files.size() > 1; }
 
-  bool shows_text() const { return !options_.is_quiet && options_.json != "-"; }
+  bool shows_text() const { return !options_.is_quiet && leaves_standard_output(); }
 
   void check_file(const std::string& file) {
     auto loaded = load_with_notes(file, options_.reading, options_.thread_count);
@@ -271,12 +271,12 @@ int run(const CheckArguments& options) {
         options.files.size());
     return kExitUsage;
   }
-  if (complain_of_clash(options.files, {{"--json", options.json},
-                                        {"--csv", options.csv},
-                                        {"--svg", options.svg},
-                                        {"--vtk", options.vtk},
-                                        {"--html", options.html},
-                                        {"--certificate", options.certificate}})) {
+  if (complain_of_outputs(options.files, {{"--json", options.json},
+                                          {"--csv", options.csv},
+                                          {"--svg", options.svg},
+                                          {"--vtk", options.vtk},
+                                          {"--html", options.html},
+                                          {"--certificate", options.certificate}})) {
     return kExitUsage;
   }
   return CheckRun(options).run();

@@ -54,7 +54,7 @@ class EmulateRun {
 
   int run() {
     const std::string inputs[] = {options_.file, image()};
-    if (complain_of_clash(inputs, {{"--json", options_.json}, {"--svg", options_.svg}})) {
+    if (complain_of_outputs(inputs, {{"--json", options_.json}, {"--svg", options_.svg}})) {
       return kExitUsage;
     }
     const auto structure = load_with_notes(options_.file, options_.reading);
@@ -146,7 +146,7 @@ class EmulateRun {
 
   /// False if a file cannot be written.
   bool show(const Structure& structure, const CheckResult& exact, const EmulatedRun& run) const {
-    const bool is_silent = options_.is_quiet || options_.json == "-";
+    const bool is_silent = options_.is_quiet || !leaves_standard_output();
     return show_run(options_, is_silent, structure, exact, run, run.run);
   }
 

@@ -22,7 +22,16 @@ struct Output {
 std::optional<std::string> find_clash(std::span<const std::string> inputs,
                                       std::initializer_list<Output> outputs);
 
-/// Prints it as wrong usage; false if there is none.
-bool complain_of_clash(std::span<const std::string> inputs, std::initializer_list<Output> outputs);
+/// What is wrong if the name of an output ends as files of another format do: what is written into
+/// arm.png as SVG is read by nobody. Other endings, and none, are free.
+std::optional<std::string> find_foreign_ending(std::initializer_list<Output> outputs);
+
+/// Prints either as wrong usage; false if there is none.
+bool complain_of_outputs(std::span<const std::string> inputs,
+                         std::initializer_list<Output> outputs);
+
+/// Whether the run's text goes to standard output: none of the outputs that
+/// complain_of_outputs() was asked about goes there, as one that does is all that may be there.
+bool leaves_standard_output();
 
 }  // namespace holdfast::cli

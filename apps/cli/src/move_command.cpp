@@ -79,7 +79,7 @@ int show(const MoveArguments& options, const io::MoveReport& report) {
   if (!options.json.empty() && !write_or_complain(options.json, io::move_json(report))) {
     return kExitBadInput;
   }
-  if (!options.is_quiet && options.json != "-" && options.steps != "-") {
+  if (!options.is_quiet && leaves_standard_output()) {
     fmt::print("{}", io::move_text(report));
   }
   return outcome_code(report.plan.outcome);
@@ -146,8 +146,8 @@ MoveRequest request_of(const MoveArguments& options, Progress& progress) {
 
 int run(const MoveArguments& options) {
   const std::array<std::string, 3> inputs = {options.start, options.target, options.verified};
-  if (complain_of_clash({inputs.data(), options.verified.empty() ? 2U : 3U},
-                        {{"--output", options.steps}, {"--json", options.json}})) {
+  if (complain_of_outputs({inputs.data(), options.verified.empty() ? 2U : 3U},
+                          {{"--output", options.steps}, {"--json", options.json}})) {
     return kExitUsage;
   }
   const auto start = read(options.start, "the robot", options.reading);

@@ -43,7 +43,7 @@ bool write_files(const NextArguments& options, const Structure& structure, const
 }
 
 int run(const NextArguments& options) {
-  if (complain_of_clash({&options.file, 1}, {{"--json", options.json}, {"--svg", options.svg}})) {
+  if (complain_of_outputs({&options.file, 1}, {{"--json", options.json}, {"--svg", options.svg}})) {
     return kExitUsage;
   }
   const auto structure = load_with_notes(options.file, options.reading, options.thread_count);
@@ -63,7 +63,7 @@ int run(const NextArguments& options) {
                                         host::counted(count, "place"));
                    });
                  }});
-  if (!options.is_quiet && options.json != "-" && options.svg != "-") {
+  if (!options.is_quiet && leaves_standard_output()) {
     fmt::print("{}", next_text(structure.value(), result, options.report));
   }
   if (!write_files(options, structure.value(), result, check_options)) {

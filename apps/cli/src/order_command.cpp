@@ -166,9 +166,7 @@ int show(const OrderArguments& options, const io::OrderReport& report) {
   if (!options.json.empty() && !write_or_complain(options.json, io::order_json(report))) {
     return kExitBadInput;
   }
-  const auto is_stdout = [](const std::string& path) { return path == "-"; };
-  if (!options.is_quiet && !is_stdout(options.json) && !is_stdout(options.steps) &&
-      !is_stdout(options.certificate)) {
+  if (!options.is_quiet && leaves_standard_output()) {
     fmt::print("{}", io::order_text(report));
   }
   return outcome_code(outcome);
@@ -176,10 +174,10 @@ int show(const OrderArguments& options, const io::OrderReport& report) {
 
 int run(const OrderArguments& options) {
   const std::array<std::string, 2> inputs = {options.target, options.start};
-  if (complain_of_clash({inputs.data(), options.start.empty() ? 1U : 2U},
-                        {{"--output", options.steps},
-                         {"--json", options.json},
-                         {"--certificate", options.certificate}})) {
+  if (complain_of_outputs({inputs.data(), options.start.empty() ? 1U : 2U},
+                          {{"--output", options.steps},
+                           {"--json", options.json},
+                           {"--certificate", options.certificate}})) {
     return kExitUsage;
   }
   if ((options.reach == "surface") != !options.source.empty()) {

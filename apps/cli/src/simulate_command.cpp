@@ -105,10 +105,10 @@ class SimulateRun {
     simulation_.method = *method;
     simulation_.seed = options_.seed;
     add_noise();
-    if (complain_of_clash({&options_.file, 1}, {{"--json", options_.json},
-                                                {"--trace", options_.trace},
-                                                {"--story", options_.story},
-                                                {"--svg", options_.svg}})) {
+    if (complain_of_outputs({&options_.file, 1}, {{"--json", options_.json},
+                                                  {"--trace", options_.trace},
+                                                  {"--story", options_.story},
+                                                  {"--svg", options_.svg}})) {
       return kExitUsage;
     }
     if (options_.takes_steps || options_.judges_stages) {
@@ -164,7 +164,7 @@ class SimulateRun {
     if (!simulated) {
       return fail(simulated.error(), options_.file);
     }
-    if (!options_.is_quiet && options_.json != "-") {
+    if (!options_.is_quiet && leaves_standard_output()) {
       fmt::print("{}", simulated_next_text(structure.value(), simulated.value()));
     }
     return write_next(structure.value(), simulated.value()) ? exit_code_of(simulated.value().next)
@@ -211,7 +211,7 @@ class SimulateRun {
       return fail(stages.error(), options_.file);
     }
     const verdict::Verdict verdict = stages.value().verdict();
-    if (!options_.is_quiet && options_.json != "-") {
+    if (!options_.is_quiet && leaves_standard_output()) {
       fmt::print("{} {}\n{}", banner(verdict), io::one_line(file.name),
                  simulated_stages_text(file, stages.value(), text_options()));
     }
@@ -231,7 +231,7 @@ class SimulateRun {
       return fail(steps.error(), options_.file);
     }
     const verdict::Verdict worst = worst_verdict(steps.value());
-    if (!options_.is_quiet && options_.json != "-") {
+    if (!options_.is_quiet && leaves_standard_output()) {
       fmt::print("{} {}\n{}", banner(worst), io::one_line(file.name),
                  simulated_steps_text(file, steps.value(), text_options()));
     }
@@ -319,7 +319,7 @@ class SimulateRun {
 
   /// False if a file cannot be written.
   bool show(const Structure& structure, const CheckResult& exact, const DistributedRun& run) const {
-    const bool is_silent = options_.is_quiet || options_.json == "-" || options_.story == "-";
+    const bool is_silent = options_.is_quiet || !leaves_standard_output();
     return show_run(options_, is_silent, structure, exact, run, run);
   }
 

@@ -131,10 +131,10 @@ int run(const StepsArguments& options) {
     return run_certificate(options);
   }
   const std::vector<std::string> inputs = {options.file};
-  if (complain_of_clash(inputs, {{"--json", options.json},
-                                 {"--svg", options.svg},
-                                 {"--html", options.html},
-                                 {"--vtk", options.vtk}}) ||
+  if (complain_of_outputs(inputs, {{"--json", options.json},
+                                   {"--svg", options.svg},
+                                   {"--html", options.html},
+                                   {"--vtk", options.vtk}}) ||
       complain_of_series(options)) {
     return kExitUsage;
   }
@@ -149,7 +149,7 @@ int run(const StepsArguments& options) {
     return fail(result.error(), options.file);
   }
   const verdict::Verdict verdict = result.value().judgement.verdict();
-  if (!options.is_quiet && options.json != "-") {
+  if (!options.is_quiet && leaves_standard_output()) {
     fmt::print("{} {}\n{}", banner(verdict), io::one_line(file.value().name),
                steps_text(file.value(), result.value()));
   }
