@@ -62,7 +62,7 @@ bool is_within(unsigned value) {
 const Limit kLimits[] = {
     {kGoldenTrace[0].messages[0], 7, is_within<1, 12>},                        // join: wave
     {kGoldenTrace[0].messages[2], 7, is_within<1, 3>},                         // echo: wave
-    {kGoldenTrace[0].messages[2], 18, is_within<0, 1>},                        // echo: silent
+    {kGoldenTrace[0].messages[2], 18, is_within<0, 3>},                        // echo: doubt
     {kGoldenTrace[0].messages[1], 1, is_within<1, 2>},                         // appoint
     {kGoldenVectors[1], 1, [](unsigned v) { return is_planned(v & 0x3fU); }},  // planned down
     {kGoldenVectors[2], 1, is_planned},                                        // planned up
