@@ -23,6 +23,17 @@ Phase phase_of(SpanningTree::Wave wave) {
   }
 }
 
+/// Both enumerations have the last two in the same order.
+Reason reason_of(Doubt doubt) {
+  static_assert(
+      static_cast<int>(Reason::kFacesMismatch) - static_cast<int>(Reason::kCellsContradict) ==
+      static_cast<int>(Doubt::kFacesMismatch) - static_cast<int>(Doubt::kCellsContradict));
+  constexpr int kAhead =
+      static_cast<int>(Reason::kFacesMismatch) - static_cast<int>(Doubt::kFacesMismatch);
+  return doubt == Doubt::kNeighbourSilent ? Reason::kNeighbourSilent
+                                          : static_cast<Reason>(static_cast<int>(doubt) + kAhead);
+}
+
 }  // namespace
 
 Agent::Agent(const Setup& setup, const Identity& identity, const LentMemory* lent)
@@ -358,9 +369,9 @@ bool Agent::end_wave() {
   if (kJudgesStages && ws_.stages() != nullptr && find_pieces()) {
     return true;
   }
-  if (census.is_anyone_silent) {
+  if (census.doubt != Doubt::kNone) {
     Order order{.operation = wire::Operation::kVerdict};
-    order.answer = {.verdict = Verdict::kUndecided, .reason = Reason::kNeighbourSilent};
+    order.answer = {.verdict = Verdict::kUndecided, .reason = reason_of(census.doubt)};
     keep_order(order);
   } else if (tree.wave() == SpanningTree::Wave::kTree) {
     keep_order(conductor_.begin(ws_.setup, tree.cell(), census.count, census.hops,

@@ -130,7 +130,7 @@ void Agent::decline(Direction face, const Join& join) {
                                                 .count = 1,
                                                 .hops = join.hops,
                                                 .id = identity_.id,
-                                                .is_anyone_silent = 1}));
+                                                .doubt = Doubt::kNeighbourSilent}));
 }
 
 /// A neighbour has sent what welcome() sends. False: no working one does.
@@ -183,7 +183,7 @@ void Agent::take_newcomer(Direction face, const Echo& echo) {
   welcomed_.remove(face);
   const base::Cell there = neighbour(ws_.links.more(), cell(), face);
   const bool is_planned = ws_.planned.find(there) >= 0;
-  if (echo.count != 1 || echo.is_anyone_silent != 0) {
+  if (echo.count != 1 || echo.doubt != Doubt::kNone) {
     return leave_round();
   }
   tell({.flags = static_cast<std::uint8_t>(kIsGrown | (is_planned ? kIsEnded | kIsFulfilled : 0U)),

@@ -32,7 +32,7 @@ bool Agent::find_pieces() {
   const Stage stage = ws_.stage();
   const SpanningTree::Census& census = ws_.tree.census();
   const bool is_first = stage != Stage::kNone && ws_.tree.wave() == SpanningTree::Wave::kFirst;
-  if (!is_first || census.is_anyone_silent || census.count == conductor_.census()) {
+  if (!is_first || census.doubt != Doubt::kNone || census.count == conductor_.census()) {
     return false;
   }
   ws_.stages()->note_pieces(stage, {.epoch = epoch_after(epoch()), .starter = identity_.id});

@@ -17,6 +17,8 @@ using wire::PacketKind;
 constexpr std::uint8_t kNumberMask = 0x3f;
 constexpr std::uint16_t kGreetingChecksum = 0xffff;
 constexpr int kGreetingBytes = 6;
+/// In a greeting's last byte: bits of the lattice; above them is the face.
+constexpr unsigned kLatticeBits = 2;
 
 std::uint8_t header(std::uint8_t top, std::uint8_t number) {
   return static_cast<std::uint8_t>((top << 6U) | (number & kNumberMask));
@@ -85,9 +87,11 @@ std::uint8_t& Link::chunk_bytes(int index) {
 
 void Link::clear() {
   std::uint8_t* const lent = lent_;
+  const base::Direction face = face_;
   [[maybe_unused]] const bool was_long = is_long();
   *this = Link();
   lent_ = lent;
+  face_ = face;
 #ifndef HOLDFAST_AGENT_FLOOR_ONLY
   is_long_ = was_long;
 #endif
@@ -141,10 +145,12 @@ void Link::drop_unsent() {
   queued_bytes_ = static_cast<std::uint16_t>(furthest_bytes_ + message_left_);
 }
 
-/// A greeting: my number, the number heard from you (0: none), am I open, what lattice I am of.
+/// A greeting: my number, the number heard from you (0: none), am I open, what lattice I am of and
+/// which face this is.
 std::span<const std::uint8_t> Link::receive_greeting(std::span<const std::uint8_t> body,
                                                      const LinkTiming& timing) {
-  if (body[5] != lattice_of(timing)) {
+  constexpr unsigned kLatticeMask = (1U << kLatticeBits) - 1;
+  if ((body[5] & kLatticeMask) != lattice_of(timing)) {
     lose();
     return {};
   }
@@ -164,6 +170,7 @@ std::span<const std::uint8_t> Link::receive_greeting(std::span<const std::uint8_
     }
   }
   peer_nonce_ = theirs;
+  has_mismatch_ = body[5] >> kLatticeBits != base::index(base::opposite(face_));
   if (heard == nonce_) {
     state_ = State::kOpen;
     retry_count_ = 0;
@@ -314,7 +321,8 @@ int Link::write_greeting(std::span<std::uint8_t> packet, const LinkTiming& timin
   packet[4] = static_cast<std::uint8_t>(peer_nonce_ & 0xffU);
   packet[5] = static_cast<std::uint8_t>(peer_nonce_ >> 8U);
   packet[6] = state_ == State::kOpen ? 1 : 0;
-  packet[7] = lattice_of(timing);
+  packet[7] = static_cast<std::uint8_t>(lattice_of(timing) |
+                                        static_cast<unsigned>(base::index(face_)) << kLatticeBits);
   if (state_ == State::kGreeting) {
     retry_at_ = now + patience(timing);
   }

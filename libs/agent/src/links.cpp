@@ -17,6 +17,15 @@ Faces Links::working() const {
   return faces;
 }
 
+bool Links::has_mismatch() const {
+  for (const Direction face : all()) {
+    if (at(face).has_mismatch()) {
+      return true;
+    }
+  }
+  return false;
+}
+
 void Links::send(Faces faces, const wire::Writer& message) {
   for (const Direction face : faces) {
     touched_.add(face);
@@ -55,6 +64,7 @@ bool Links::take_refusal() {
 }
 
 void Links::bring_up(Direction face, std::uint16_t nonce, Time now) {
+  at(face).set_face(face);
   at(face).bring_up(nonce, now);
   silent_.remove(face);
   touched_.add(face);

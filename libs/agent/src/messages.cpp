@@ -44,7 +44,7 @@ constexpr void fields(auto& codec, Echo& echo) {
   codec.u32(echo.count);
   codec.u16(echo.hops);
   codec.u32(echo.id);
-  codec.u8(echo.is_anyone_silent, 0, 1);
+  codec.kind(echo.doubt, Doubt::kNone, Doubt::kFacesMismatch);
 }
 
 constexpr void fields(auto& codec, Appointment& appointment) {

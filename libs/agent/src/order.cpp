@@ -224,13 +224,9 @@ constexpr void connection_fields(auto& codec, base::Direction& direction,
 #endif
 }
 
-constexpr Reason kReasonLast = kKnowsLattices  ? Reason::kMaySlip
-                               : kJudgesStages ? Reason::kStepUnclear
-                                               : Reason::kAmbiguousFeet;
-
 constexpr void answer_fields(auto& codec, Answer& answer) {
   codec.kind(answer.verdict, Verdict::kSafe, Verdict::kUndecided);
-  codec.kind(answer.reason, Reason::kNone, kReasonLast);
+  codec.kind(answer.reason, Reason::kNone, Reason::kFacesMismatch);
   codec.require(is_reasoned(answer) && answer.reason != Reason::kNoAnswer &&
                 answer.reason != Reason::kNoAnchor);
   codec.real(answer.load_ratio_max);
@@ -754,23 +750,26 @@ const char* name(Verdict verdict) {
 }
 
 const char* name(Reason reason) {
-  constexpr const char* kNames[] = {"not known yet",
-                                    "it holds",
-                                    "a connection breaks",
-                                    "it topples",
-                                    "a module that is there does not answer",
-                                    "too many planned modules",
-                                    "a plan and its withdrawal were told at once",
-                                    "a planned module touches nothing",
-                                    "the robot is too large to be counted",
-                                    "no method settled",
-                                    "the largest load ratio cannot be told from 1",
-                                    "the verdict depends on feet that may hold or not",
-                                    "no answer in time",
-                                    "no module that knows its cell was heard",
-                                    "the robot would be in pieces",
-                                    "the step as it was told does not fit the robot",
-                                    "a facet may slip: it is pulled by more than its friction"};
+  constexpr const char* kNames[] = {
+      "not known yet",
+      "it holds",
+      "a connection breaks",
+      "it topples",
+      "a module that is there does not answer",
+      "too many planned modules",
+      "a plan and its withdrawal were told at once",
+      "a planned module touches nothing",
+      "the robot is too large to be counted",
+      "no method settled",
+      "the largest load ratio cannot be told from 1",
+      "the verdict depends on feet that may hold or not",
+      "no answer in time",
+      "no module that knows its cell was heard",
+      "the robot would be in pieces",
+      "the step as it was told does not fit the robot",
+      "a facet may slip: it is pulled by more than its friction",
+      "cells contradict: a module or an anchor is not where it was told",
+      "faces do not match: a module is turned, or a cable is crossed"};
   return kNames[static_cast<std::size_t>(reason)];
 }
 

@@ -14,6 +14,8 @@ std::uint16_t hops_beyond(std::uint16_t hops) {
   return static_cast<std::uint16_t>(hops + (hops > kExtentMax ? 0 : 1));
 }
 
+Doubt graver(Doubt a, Doubt b) { return a < b ? b : a; }
+
 }  // namespace
 
 void SpanningTree::leave(std::uint8_t stage) {
@@ -22,6 +24,7 @@ void SpanningTree::leave(std::uint8_t stage) {
   parent_ = {};
   children_ = {};
   has_returned_ = false;
+  has_other_cell_ = false;
 }
 
 void SpanningTree::start_wave(Links& links, const Round& round, Wave wave) {
@@ -37,7 +40,7 @@ void SpanningTree::begin_wave(Links& links, const Round& round, Wave wave, Faces
   nearer_ = parent;
   children_ = {};
   has_returned_ = false;
-  census_ = {.count = 1, .hops = hops, .is_anyone_silent = !links.silent().is_empty(), .id = id_};
+  census_ = {.count = 1, .hops = hops, .id = id_};
   awaited_ = links.used() - parent;
   send_join(links, round, awaited_);
   await_less(links, round, {});
@@ -51,6 +54,26 @@ void SpanningTree::send_join(Links& links, const Round& round, Faces faces) cons
                                 .hops = hops_}));
 }
 
+/// Where the neighbour at `face`, which sits in `sender`, says that this module is. An anchor, and
+/// who knows by another neighbour, stay where they are.
+void SpanningTree::settle(const Links& links, Direction face, const base::Cell& sender,
+                          bool is_first) {
+  const base::Cell there = neighbour(links.more(), sender, base::opposite(face));
+  if (is_first && !is_anchor_) {
+    cell_ = there;
+    has_cell_ = true;
+  }
+  has_other_cell_ = has_other_cell_ || there != cell_;
+}
+
+/// What this module itself doubts. Every neighbour has greeted it before it has answered.
+Doubt SpanningTree::doubt(const Links& links) const {
+  return links.has_mismatch()        ? Doubt::kFacesMismatch
+         : has_other_cell_           ? Doubt::kCellsContradict
+         : links.silent().is_empty() ? Doubt::kNone
+                                     : Doubt::kNeighbourSilent;
+}
+
 bool SpanningTree::take_join(Links& links, Direction face, const Join& join, bool is_in_use) {
   const auto wave = static_cast<Wave>(join.wave);
   const std::uint16_t hops = hops_beyond(join.hops);
@@ -60,8 +83,7 @@ bool SpanningTree::take_join(Links& links, Direction face, const Join& join, boo
   }
   if (is_next) {
     if (wave == Wave::kFirst) {
-      cell_ = neighbour(links.more(), join.cell, base::opposite(face));
-      has_cell_ = true;
+      settle(links, face, join.cell, true);
     } else {
       root_cell_ = join.cell;
     }
@@ -70,20 +92,23 @@ bool SpanningTree::take_join(Links& links, Direction face, const Join& join, boo
     if (hops <= hops_) {
       nearer_.add(face);
     }
+    if (wave == Wave::kFirst) {
+      settle(links, face, join.cell, false);
+    }
     await_less(links, join.round, Faces::only(face));
   }
   return true;
 }
 
 void SpanningTree::adopt(Links& links, Direction face, const Adoption& adoption) {
-  cell_ = neighbour(links.more(), adoption.sender, base::opposite(face));
-  has_cell_ = true;
+  settle(links, face, adoption.sender, true);
   root_cell_ = adoption.root;
   begin_wave(links, adoption.round, Wave::kTree, Faces::only(face), hops_beyond(adoption.hops));
 }
 
 void SpanningTree::take_adoption(Links& links, Direction face, const Adoption& adoption) {
   const std::uint16_t hops = hops_beyond(adoption.hops);
+  settle(links, face, adoption.sender, false);
   Faces others = Faces::only(face);
   if (hops < hops_ && awaited_.has(face)) {
     others = parent_;
@@ -108,7 +133,7 @@ void SpanningTree::take_echo(Links& links, Direction face, const Echo& echo) {
     census_.hops = echo.hops;
     census_.id = echo.id;
   }
-  census_.is_anyone_silent = echo.is_anyone_silent != 0 || census_.is_anyone_silent;
+  census_.doubt = graver(census_.doubt, echo.doubt);
   children_.add(face);
   await_less(links, echo.round, Faces::only(face));
 }
@@ -122,6 +147,7 @@ void SpanningTree::await_less(Links& links, const Round& round, Faces faces) {
   if (!awaited_.is_empty()) {
     return;
   }
+  census_.doubt = graver(census_.doubt, doubt(links));
   if (is_root()) {
     has_returned_ = true;
   } else {
@@ -130,13 +156,12 @@ void SpanningTree::await_less(Links& links, const Round& round, Faces faces) {
 }
 
 void SpanningTree::send_echo(Links& links, const Round& round) const {
-  const std::uint8_t is_anyone_silent = census_.is_anyone_silent ? 1 : 0;
   links.send(parent_, encode(Echo{.round = round,
                                   .wave = number_of(wave_),
                                   .count = census_.count,
                                   .hops = census_.hops,
                                   .id = census_.id,
-                                  .is_anyone_silent = is_anyone_silent}));
+                                  .doubt = census_.doubt}));
 }
 
 bool SpanningTree::take_return() {

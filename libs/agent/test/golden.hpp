@@ -110,7 +110,7 @@ inline constexpr std::array<std::string_view, 2> kGoldenParts = {
     "13 05 01 01 01 01 01 01 01 01 01 01 01 01 01 01 01 01 01 01 01 01 01 01 01 f1"};
 
 inline constexpr std::string_view kGoldenHello = "c0 40 34 12 00 00 00 00 77 8e";
-inline constexpr std::string_view kGoldenHelloHeard = "c0 40 ef be 34 12 00 00 35 83";
+inline constexpr std::string_view kGoldenHelloHeard = "c0 40 ef be 34 12 00 04 b1 c3";
 inline constexpr std::string_view kGoldenHelloOpen = "c0 40 34 12 ef be 01 00 bc 08";
 inline constexpr std::string_view kGoldenData = "00 40 04 02 01 05 0d 3a 9b";
 inline constexpr std::string_view kGoldenAcknowledge = "40 41 4a 72";

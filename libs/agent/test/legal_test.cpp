@@ -62,7 +62,7 @@ bool is_within(unsigned value) {
 const Limit kLimits[] = {
     {kGoldenTrace[0].messages[0], 7, is_within<1, 12>},                        // join: wave
     {kGoldenTrace[0].messages[2], 7, is_within<1, 3>},                         // echo: wave
-    {kGoldenTrace[0].messages[2], 18, is_within<0, 1>},                        // echo: silent
+    {kGoldenTrace[0].messages[2], 18, is_within<0, 3>},                        // echo: doubt
     {kGoldenTrace[0].messages[1], 1, is_within<1, 2>},                         // appoint
     {kGoldenVectors[1], 1, [](unsigned v) { return is_planned(v & 0x3fU); }},  // planned down
     {kGoldenVectors[2], 1, is_planned},                                        // planned up
@@ -150,7 +150,7 @@ TEST(Legal, verdicts_have_a_reason_of_theirs) {
       message[2] = static_cast<std::uint8_t>(verdict);
       message[3] = static_cast<std::uint8_t>(reason);
       const bool is_sure = 1 <= verdict && verdict <= 3 && reason == verdict;
-      const bool is_told = (4 <= reason && reason <= 11) || (14 <= reason && reason <= 16);
+      const bool is_told = (4 <= reason && reason <= 11) || (14 <= reason && reason <= 18);
       const bool is_undecided = verdict == 4 && is_told;
       EXPECT_EQ(is_legal(message), is_sure || is_undecided) << to_hex(message);
     }

@@ -34,6 +34,8 @@ class TamperedNetwork {
         Tap& tap = taps_[index(face)];
         tap.other = static_cast<std::size_t>(other);
         tap.is_used = true;
+        tap.near.set_face(base::opposite(face));
+        tap.far.set_face(face);
         tap.near.bring_up(random_++, 0);
         tap.far.bring_up(random_++, 0);
       }

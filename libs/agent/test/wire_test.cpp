@@ -263,6 +263,7 @@ TEST(Wire, packets_are_these_bytes) {
   Link a;
   Link b;
   a.bring_up(0x1234, 0);
+  b.set_face(base::Direction::kMinusX);
   b.bring_up(0xbeef, 0);
   EXPECT_EQ(packet_text(a), kGoldenHello);
   EXPECT_TRUE(b.receive(from_hex(kGoldenHello), timing, 0).empty());
@@ -271,6 +272,7 @@ TEST(Wire, packets_are_these_bytes) {
   EXPECT_EQ(packet_text(a), kGoldenHelloOpen);
   b.receive(from_hex(kGoldenHelloOpen), timing, 0);
   EXPECT_EQ(b.state(), Link::State::kOpen);
+  EXPECT_FALSE(a.has_mismatch() || b.has_mismatch());
 
   Writer mark(MessageType::kMark);
   mark.u16(258);

@@ -15,12 +15,16 @@ namespace {
 /// Increments of the random number of link-ups: odd, so that 65,536 link-ups all differ.
 constexpr unsigned kRandomStep = 0x9e37;
 
-agent::Identity identity_of(const model::Robot& robot, std::size_t module, std::int32_t anchor) {
+agent::Identity identity_of(const model::Robot& robot, std::size_t module,
+                            const SimulationOptions& options) {
   const model::Module& description = robot.modules()[module];
+  const auto index = static_cast<std::int32_t>(module);
+  const auto told = std::ranges::find(options.told_cells, index, &ToldCell::module);
+  const bool is_told = told != options.told_cells.end();
   return {.id = static_cast<std::uint32_t>(module + 1),
           .is_fixed = description.support == model::Support::kFixed,
-          .is_anchor = module == static_cast<std::size_t>(anchor),
-          .cell = description.cell};
+          .is_anchor = is_told || index == options.anchor,
+          .cell = is_told ? told->cell : description.cell};
 }
 
 Clock draw_clock(const LinkModel& link, base::Rng& rng) {
@@ -101,7 +105,7 @@ Engine::Engine(const model::Robot& robot, SimulationOptions options)
   // A seed of its own for each module: consecutive seeds of the whole do not overlap.
   const std::uint64_t base = base::Rng(options_.seed).next();
   for (std::size_t i = 0; i < count; ++i) {
-    agents_.emplace_back(setup_, identity_of(robot, i, options_.anchor), lent_.memory_of(i));
+    agents_.emplace_back(setup_, identity_of(robot, i, options_), lent_.memory_of(i));
     Port& port = ports_[i];
     port.rng = base::Rng(base::Rng(base + i).next());
     port.random = static_cast<std::uint16_t>(port.rng.next());
@@ -280,6 +284,8 @@ void Engine::detach(std::int32_t module) {
   }
   port.is_attached = false;
   silence(module);
+  std::erase_if(options_.misplaced,
+                [module](const Misplaced& wrong) { return wrong.module == module; });
   tell_neighbours(module, agent::EventKind::kLinkDown);
 }
 
@@ -294,7 +300,7 @@ void Engine::attach(std::int32_t module) {
 void Engine::begin_anew(std::int32_t module) {
   agent::Agent* place = &agents_[at(module)];
   std::destroy_at(place);
-  std::construct_at(place, setup_, identity_of(robot_, at(module), options_.anchor),
+  std::construct_at(place, setup_, identity_of(robot_, at(module), options_),
                     lent_.memory_of(at(module)));
   Port& port = ports_[at(module)];
   port.seen = {};

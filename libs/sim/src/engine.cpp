@@ -10,6 +10,20 @@ namespace holdfast::sim {
 
 using agent::EventKind;
 
+namespace {
+
+/// Faces of a misplaced module, as others see them.
+std::uint16_t seen_from_outside(const Misplaced& misplaced, agent::FaceMask own, int count) {
+  std::uint16_t faces = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    const auto face = static_cast<unsigned>(base::index(misplaced.faces[i]));
+    faces = static_cast<std::uint16_t>(faces | ((own >> face) & 1U) << i);
+  }
+  return faces;
+}
+
+}  // namespace
+
 std::uint64_t Engine::pack(const Happening& what) {
   return static_cast<std::uint64_t>(what.item) << 32U |
          static_cast<std::uint64_t>(what.module) << 7U |
@@ -160,15 +174,27 @@ void Engine::hand_in(std::int32_t module, const agent::Event& event) {
   settle(module);
 }
 
+/// How the module was put on, if that was wrong.
+const Misplaced* Engine::find_misplaced(std::int32_t module) const {
+  const auto found = std::ranges::find(options_.misplaced, module, &Misplaced::module);
+  return found != options_.misplaced.end() ? &*found : nullptr;
+}
+
 void Engine::step(std::int32_t module) {
   Port& port = ports_[at(module)];
   step_event_.now = port.clock.local(now_);
   actions_.send_faces = 0;
   actions_.wake_at = agent::kNever;
   actions_.packet_bytes = 0;
+  const Misplaced* const misplaced = find_misplaced(module);
+  if (misplaced != nullptr) {
+    step_event_.face = misplaced->faces[static_cast<std::size_t>(base::index(step_event_.face))];
+  }
   agents_[at(module)].step(step_event_, actions_);
   recorder_.handled(now_);
-  port.wanted = actions_.send_faces;
+  port.wanted = misplaced == nullptr ? actions_.send_faces
+                                     : seen_from_outside(*misplaced, actions_.send_faces,
+                                                         robot_.lattice().direction_count);
   Time wake_at = actions_.wake_at;
   if (wake_at <= step_event_.now) {
     // To be woken at once, unless that has just been done: what is due then waits for a line.

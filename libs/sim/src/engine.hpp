@@ -89,6 +89,7 @@ class Engine {
   void attend(const Happening& what);
   void serve(const Happening& what);
   void hand_in(std::int32_t module, const agent::Event& event);
+  const Misplaced* find_misplaced(std::int32_t module) const;
   void step(std::int32_t module);
   void settle(std::int32_t module);
   void arm_timer(std::int32_t module);

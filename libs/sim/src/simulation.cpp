@@ -57,6 +57,20 @@ std::uint8_t wire_number(const base::Lattice& lattice) {
                                          : agent::wire::kHexagonalPrismLattice;
 }
 
+/// Is every face of the lattice named once?
+std::optional<std::string> find_faces_fault(const model::Robot& robot, const Misplaced& misplaced) {
+  std::uint32_t seen = 0;
+  const auto count = static_cast<std::size_t>(robot.lattice().direction_count);
+  for (std::size_t i = 0; i < count; ++i) {
+    seen |= 1U << static_cast<unsigned>(base::index(misplaced.faces[i]));
+  }
+  if (seen == (1U << count) - 1) {
+    return std::nullopt;
+  }
+  return fmt::format("the faces of misplaced module {} are not {} different ones of its lattice",
+                     misplaced.module, count);
+}
+
 /// What is in a cell where the robot has no module is known of a floor only.
 std::optional<std::string> find_place_fault(const model::Robot& robot,
                                             const Announcement& announcement) {
@@ -91,6 +105,13 @@ std::optional<std::string> find_options_fault(const model::Robot& robot,
   found = found ? found : find_link_fault(options.link);
   found = found ? found : find_module_fault("anchor", options.anchor, count);
   found = found ? found : find_module_fault("plan_module", options.plan_module, count);
+  for (std::size_t i = 0; !found && i < options.misplaced.size(); ++i) {
+    found = find_module_fault("misplaced module", options.misplaced[i].module, count);
+    found = found ? found : find_faces_fault(robot, options.misplaced[i]);
+  }
+  for (std::size_t i = 0; !found && i < options.told_cells.size(); ++i) {
+    found = find_module_fault("module that is told its cell", options.told_cells[i].module, count);
+  }
   if (!found && options.step.size() > agent::kWordCountMax) {
     found = fmt::format("the step has {} words, allowed are {}: modules keep no more",
                         options.step.size(), agent::kWordCountMax);

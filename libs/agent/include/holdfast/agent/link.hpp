@@ -59,6 +59,13 @@ class Link {
 
   void bring_down();
 
+  /// Which face of the module it is at, as greetings say; before it comes up. +x if nobody says.
+  void set_face(base::Direction face) { face_ = face; }
+
+  /// Has the neighbour greeted from another face than the one opposite this one? It is turned, or
+  /// the cable is in a wrong place; the link works all the same.
+  bool has_mismatch() const { return has_mismatch_; }
+
   /// A longer queue, kLentBytes; while the link is down. Who has one has long streams, and
   /// acknowledges every second packet that is full at once.
   void lend(std::uint8_t* queue) { lent_ = queue; }
@@ -144,6 +151,8 @@ class Link {
   bool needs_greeting_ = false;
   bool needs_ping_ = false;
   bool is_restarted_ = false;
+  base::Direction face_ = base::Direction::kPlusX;
+  bool has_mismatch_ = false;
   std::uint16_t nonce_ = 0;
   std::uint16_t peer_nonce_ = 0;
 

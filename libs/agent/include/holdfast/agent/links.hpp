@@ -55,6 +55,10 @@ class Links {
   /// Faces of neighbours that ought to answer and do not.
   Faces silent() const { return silent_; }
 
+  /// Is a face of this module connected with one that does not look at it? Known of every neighbour
+  /// that has said anything.
+  bool has_mismatch() const;
+
   bool is_used(Direction face) const { return at(face).is_used(); }
 
   /// Queues a message on every one of `faces`. A neighbour that does not take what it is sent is as

@@ -22,6 +22,14 @@
 /// know (Agent::expects).
 namespace holdfast::agent {
 
+/// Why no verdict is certain, whatever the loads are; the graver the larger.
+enum class Doubt : std::uint8_t {
+  kNone,
+  kNeighbourSilent,
+  kCellsContradict,  ///< A module was told two cells.
+  kFacesMismatch,    ///< Two faces are connected that do not look at each other.
+};
+
 /// A wave on its way out: take part in a round, and where you are.
 struct Join {
   Round round = {};
@@ -36,10 +44,10 @@ struct Join {
 struct Echo {
   Round round = {};
   std::uint8_t wave = 1;
-  std::uint32_t count = 0;  ///< Modules from the sender down.
-  std::uint16_t hops = 0;   ///< Hops of the furthest of them.
-  std::uint32_t id = 0;     ///< Identity of that module; of several the lowest.
-  std::uint8_t is_anyone_silent = 0;
+  std::uint32_t count = 0;     ///< Modules from the sender down.
+  std::uint16_t hops = 0;      ///< Hops of the furthest of them.
+  std::uint32_t id = 0;        ///< Identity of that module; of several the lowest.
+  Doubt doubt = Doubt::kNone;  ///< The gravest of theirs.
 };
 
 /// Who acts after a wave.

@@ -39,8 +39,10 @@ enum class Reason : std::uint8_t {
   kInPieces,       ///< In a stage of a step the robot would be in pieces.
   kStepUnclear,    ///< The words of a step are missing, contradict each other, or do not fit.
   kMaySlip,        ///< A facet is pulled sideways by more than its friction.
+  kCellsContradict,  ///< A module would sit in two cells, or an anchor in another than it was told.
+  kFacesMismatch,    ///< Two faces are connected that do not look at each other.
 };
-inline constexpr int kReasonCount = 17;
+inline constexpr int kReasonCount = 19;
 
 /// What there is to say of connections besides how much they carry, where they have laws of their
 /// own: which limit it is (mechanics::Limit) that the worst one is nearest to, ...

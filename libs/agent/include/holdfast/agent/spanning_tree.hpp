@@ -38,15 +38,16 @@ class SpanningTree {
 
   /// What the echoes of a wave have added up.
   struct Census {
-    std::uint32_t count = 0;  ///< Modules.
-    std::uint16_t hops = 0;   ///< To the module furthest away, ...
-    bool is_anyone_silent = false;
-    std::uint32_t id = 0;  ///< ... and the identity of that.
+    std::uint32_t count = 0;     ///< Modules.
+    std::uint16_t hops = 0;      ///< To the module furthest away, ...
+    Doubt doubt = Doubt::kNone;  ///< The gravest.
+    std::uint32_t id = 0;        ///< ... and the identity of that.
   };
 
-  /// `id` differs for every module. The anchor knows its cell.
+  /// `id` differs for every module. The anchor knows its cell. There may be several anchors, if
+  /// what they know agrees.
   SpanningTree(std::uint32_t id, bool is_anchor, const base::Cell& cell)
-      : id_(id), has_cell_(is_anchor), cell_(cell) {}
+      : id_(id), is_anchor_(is_anchor), has_cell_(is_anchor), cell_(cell) {}
 
   // ---- What is known.
 
@@ -126,13 +127,17 @@ class SpanningTree {
  private:
   void begin_wave(Links& links, const Round& round, Wave wave, Faces parent, std::uint16_t hops);
   void send_join(Links& links, const Round& round, Faces faces) const;
+  void settle(const Links& links, Direction face, const base::Cell& sender, bool is_first);
+  Doubt doubt(const Links& links) const;
   void await_less(Links& links, const Round& round, Faces faces);
   void send_echo(Links& links, const Round& round) const;
   Faces towards_root(const Links& links, const base::Cell& end) const;
 
   std::uint32_t id_;
   Wave wave_ = Wave::kNone;
+  bool is_anchor_;
   bool has_cell_;
+  bool has_other_cell_ = false;  ///< In this round the module was told two cells.
   bool has_returned_ = false;
   std::uint8_t stage_ = 0;
   Faces parent_;

@@ -23,7 +23,7 @@ namespace holdfast::agent {
 struct Identity {
   std::uint32_t id = 0;    ///< Different for every module.
   bool is_fixed = false;   ///< Held from outside, does not move.
-  bool is_anchor = false;  ///< Knows `cell` from the start; exactly one module.
+  bool is_anchor = false;  ///< Knows `cell` from the start; one module, or several that agree.
   base::Cell cell = {};    ///< The anchor's cell.
 };
 

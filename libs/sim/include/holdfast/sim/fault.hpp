@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string_view>
 
 #include "holdfast/agent/link.hpp"
 #include "holdfast/base/cell.hpp"
+#include "holdfast/base/lattice.hpp"
 
 /// What goes wrong, or is changed by hand, while a robot computes; as data.
 namespace holdfast::sim {
@@ -38,6 +40,20 @@ constexpr bool is_of_link(Fault::Kind kind) {
   return kind == Fault::Kind::kCut || kind == Fault::Kind::kMend || kind == Fault::Kind::kUnplug ||
          kind == Fault::Kind::kPlug;
 }
+
+/// A module that was put on turned, or with its cables crossed: it senses by another face than the
+/// one that looks at a neighbour, until it is taken off.
+struct Misplaced {
+  std::int32_t module = 0;
+  /// By direction in the robot, the face that the module takes it for; each face once.
+  std::array<base::Direction, base::Lattice::kDirectionCountMax> faces = {};
+};
+
+/// A module that was told its cell, right or wrong.
+struct ToldCell {
+  std::int32_t module = 0;
+  base::Cell cell;
+};
 
 /// A module is told that another one is planned, or not any more. One that is silent or not there
 /// hears nothing.

@@ -42,6 +42,9 @@ struct SimulationOptions {
   std::vector<Fault> faults = {};
   std::vector<std::int32_t> absent = {};         ///< Modules that are not there at the start.
   std::vector<Announcement> announcements = {};  ///< Besides the robot's planned modules.
+  std::vector<Misplaced> misplaced = {};         ///< Modules that are put on wrongly.
+  /// Anchors besides `anchor`; with that module here, it is told this cell.
+  std::vector<ToldCell> told_cells = {};
   /// The words of a step; if there are any, modules have memory to judge its stages.
   std::vector<agent::StepWord> step = {};
   /// The robot as the step leaves it, where it is more than cubes on a floor; not owned. Without,
