@@ -642,6 +642,19 @@ Order Conductor::after_jacobi(const Setup& setup, const Report& report) {
 
 // ---- The end.
 
+namespace {
+
+/// Do supports hold by friction, so that forces say whether they slip?
+bool has_friction([[maybe_unused]] const Setup& setup) {
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+  return false;
+#else
+  return setup.has_friction;
+#endif
+}
+
+}  // namespace
+
 Order Conductor::after_corners(const Setup& setup, const Report& report) {
   if (is_seeking()) {
     other_fails_ = !report.corners.stable;
@@ -654,6 +667,10 @@ Order Conductor::after_corners(const Setup& setup, const Report& report) {
     }
     // On a level floor the rigid body stands, so the corners are wrong; else they decide.
     return is_uneven() ? finish(Verdict::kUnstable, Reason::kTopples) : begin_unilateral(setup);
+  }
+  // Whether facets slip is asked of both laws.
+  if (kHasSurroundings && is_second_ && has_friction(setup)) {
+    return ask(Operation::kLoads);
   }
   Order hold = ask(Operation::kHold);
   hold.flags = kReleaseOpen;
@@ -670,6 +687,9 @@ Order Conductor::after_hold(const Report& report) {
   }
   open_held_count_ = report.open_held_count();
   if (kHasSurroundings && is_second_) {
+    if (answer_.reason == Reason::kMaySlip) {
+      return finish(Verdict::kUndecided, Reason::kMaySlip);
+    }
     const Order verdict = decide();
     const bool is_final = open_held_count_ == 0 || answer_.verdict == Verdict::kUndecided;
     return is_final ? verdict : free_open_feet();
@@ -703,6 +723,13 @@ void Conductor::note_worst(const Report& report) {
 Order Conductor::after_loads(const Setup& setup, const Report& report) {
   if (report.module_count() != effort_.module_count) {
     return finish(Verdict::kUndecided, Reason::kNeighbourSilent);
+  }
+  if (kHasSurroundings && is_second_) {
+    // It counts if no open facet has to let go.
+    answer_.reason = may_slip(report) ? Reason::kMaySlip : Reason::kNone;
+    Order hold = ask(Operation::kHold);
+    hold.flags = kReleaseOpen;
+    return hold;
   }
   note_worst(report);
   if (may_slip(report)) {
