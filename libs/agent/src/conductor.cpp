@@ -677,32 +677,6 @@ Order Conductor::after_corners(const Setup& setup, const Report& report) {
   return hold;
 }
 
-Order Conductor::after_hold(const Report& report) {
-  if (is_comparing_ || report.count > 0) {
-    error_best_ = kUnbounded;
-    stagnation_count_ = 0;
-    target_ = is_uneven() ? kUnevenTolerance : kRatioTolerance;
-    begin_states();
-    return has_fronts() ? tree_iteration() : is_one_sweep() ? first_iteration() : move(0);
-  }
-  open_held_count_ = report.open_held_count();
-  if (kHasSurroundings && is_second_) {
-    if (answer_.reason == Reason::kMaySlip) {
-      return finish(Verdict::kUndecided, Reason::kMaySlip);
-    }
-    const Order verdict = decide();
-    const bool is_final = open_held_count_ == 0 || answer_.verdict == Verdict::kUndecided;
-    return is_final ? verdict : free_open_feet();
-  }
-  if (is_uneven() && !is_standing_) {
-    return finish(Verdict::kUnstable, Reason::kTopples);
-  }
-  if (kHasSurroundings && weak_springs_ == WeakSprings::kToppling) {
-    return finish(Verdict::kUndecided, Reason::kNotConverged);
-  }
-  return ask(Operation::kLoads);
-}
-
 /// The law that has an answer for every robot.
 Order Conductor::begin_unilateral(const Setup& setup) {
   take_safest_method(setup);
