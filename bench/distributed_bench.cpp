@@ -5,12 +5,13 @@
 //   distributed_bench random FROM TO [METHOD [PLANNED]]   random robots against the exact answer,
 //                                         quiet links; with 6 to PLANNED planned modules, 30 at
 //                                         most; METHOD firmware: those that firmware has
-//   distributed_bench general FROM TO [planned] [turned] [floor] [laws] [near] [friction] [LATTICE]
+//   distributed_bench general FROM TO [planned] [turned] [floor] [laws] [near] [friction] [held]
+//                             [LATTICE]
 //                                         cubes or others on walls and ceilings, with loads of
 //                                         their own; one to three modules planned; turned and
 //                                         mirrored; on a floor; connectors with laws of their own,
 //                                         all strengths so that the load ratio is within 1 % of 1;
-//                                         friction
+//                                         friction; held: all that exists is fixed, several planned
 //   distributed_bench noisy FROM TO [METHOD [PLANNED]]   the same with loss, duplication, jitter,
 //   bit
 //                                         errors
@@ -182,13 +183,15 @@ struct Variety {
   bool has_laws = false;
   bool is_near = false;
   bool has_friction = false;
+  bool is_held = false;
   base::Lattice lattice = base::kCubic;
 
   std::optional<model::Robot> make(std::uint64_t seed) const;
 };
 
 std::optional<model::Robot> Variety::make(std::uint64_t seed) const {
-  model::RobotSpec spec = test::general_robot(lattice, seed);
+  model::RobotSpec spec = is_held ? test::held_robot(lattice, seed, test::Fixed::kAll)
+                                  : test::general_robot(lattice, seed);
   spec = is_on_floor ? test::on_a_floor(spec, seed % 2 == 0) : spec;
   spec = test::with_last_planned(spec, is_planned ? 1 + seed % 3 : 0);
   spec = has_laws ? test::with_laws(spec, seed) : spec;
@@ -528,7 +531,8 @@ int run_general(std::span<char*> arguments) {
   const std::pair<std::string_view, bool Variety::*> words[] = {
       {"planned", &Variety::is_planned}, {"turned", &Variety::is_turned},
       {"floor", &Variety::is_on_floor},  {"laws", &Variety::has_laws},
-      {"near", &Variety::is_near},       {"friction", &Variety::has_friction}};
+      {"near", &Variety::is_near},       {"friction", &Variety::has_friction},
+      {"held", &Variety::is_held}};
   for (const std::string_view argument : arguments.subspan(2)) {
     const auto* const word =
         std::ranges::find(words, argument, &std::pair<std::string_view, bool Variety::*>::first);

@@ -256,6 +256,22 @@ TEST(DistributedGeneral, is_undecided_where_a_facet_that_hardly_presses_decides)
   EXPECT_EQ(comparison.result.answer.reason, agent::Reason::kAmbiguousFeet);
 }
 
+/// By the law that is asked second a facet is pulled sideways by eleven times what presses it, more
+/// than its friction: forces of both laws are asked.
+TEST(DistributedGeneral, is_undecided_where_a_facet_slips_by_one_of_both_laws) {
+  model::RobotSpec spec{.existing = {{0, 0, 0}, {1, 0, 0}, {1, 0, -1}, {1, 0, -2}, {0, 0, -2}}};
+  spec.fixed = {{1, 0, 0}};
+  spec.support_z = std::nullopt;
+  spec.obstacles = {
+      {.from = {}, .to = {}, .cells = {{-1, 0, -2}, {1, -1, -2}, {0, 0, -3}}},
+      {.from = {}, .to = {}, .cells = {{1, 1, 0}}, .touch = {.friction = 1.09}},
+      {.from = {}, .to = {}, .cells = {{0, -1, 0}}, .touch = {.friction = 1.41}},
+      {.from = {}, .to = {}, .cells = {{0, 0, -1}}, .touch = {.hold = model::Hold::kBonded}}};
+  const test::Comparison comparison = test::compare(test::robot_of(spec), {});
+  EXPECT_EQ(comparison.exact, verdict::Verdict::kUndecided);
+  EXPECT_EQ(comparison.result.answer.reason, agent::Reason::kMaySlip) << comparison.text();
+}
+
 /// Two modules: a foot of mass M, and one of 0.1 kg in the next layer or, of prisms, row: the
 /// centre of mass is a share 0.1 / (0.1 + M) of their distance on the floor from the foot's middle.
 /// A foot is half a pitch wide, so they fall if that is a quarter of a pitch or more.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <set>
 #include <string>
 
@@ -35,17 +36,34 @@ double between(double low, double high, base::Rng& rng) {
   return low + (high - low) * static_cast<double>(rng.below(1000)) / 1000;
 }
 
-std::vector<Cell> grown(const base::Lattice& lattice, std::size_t count, base::Rng& rng) {
+constexpr std::int32_t kNoFloor = std::numeric_limits<std::int32_t>::min();
+
+std::vector<Cell> grown(const base::Lattice& lattice, std::size_t count, base::Rng& rng,
+                        std::int32_t lowest = kNoFloor) {
   std::vector<Cell> cells = {{0, 0, 0}};
   std::set<Cell> taken = {cells.front()};
   while (cells.size() < count) {
     const Cell& from = cells[rng.below(cells.size())];
     const Cell next = base::neighbour(lattice, from, any_direction(lattice, rng));
-    if (taken.insert(next).second) {
+    if (next.z >= lowest && taken.insert(next).second) {
       cells.push_back(next);
     }
   }
   return cells;
+}
+
+bool is_fixed(Fixed fixed, bool is_first, bool is_last, base::Rng& rng) {
+  switch (fixed) {
+    case Fixed::kAll:
+      return true;
+    case Fixed::kAllButOne:
+      return !is_last;
+    case Fixed::kSome:
+      return rng.below(2) == 0;
+    case Fixed::kFirst:
+      break;
+  }
+  return is_first;
 }
 
 /// Free cells beside the robot, each an obstacle of its own kind.
@@ -196,6 +214,27 @@ model::RobotSpec general_robot(const base::Lattice& lattice, std::uint64_t seed)
   return spec;
 }
 
+model::RobotSpec held_robot(const base::Lattice& lattice, std::uint64_t seed, Fixed fixed) {
+  base::Rng rng(seed ^ 0x4e1dU);
+  const std::size_t existing = 2 + rng.below(6);
+  const std::size_t planned = 2 + rng.below(6);
+  model::RobotSpec spec;
+  spec.lattice = lattice;
+  for (const Cell& cell : grown(lattice, existing + planned, rng, 0)) {
+    (spec.existing.size() < existing ? spec.existing : spec.planned).push_back(cell);
+  }
+  for (const Cell& cell : spec.existing) {
+    if (is_fixed(fixed, cell == spec.existing.front(), cell == spec.existing.back(), rng)) {
+      spec.fixed.push_back(cell);
+    }
+  }
+  if (seed % 2 == 1) {
+    spec.material.pitch_mm = 10;
+    spec.material.facet_mm = 9;
+  }
+  return spec;
+}
+
 model::RobotSpec with_last_planned(model::RobotSpec spec, std::size_t count) {
   for (std::size_t k = 0; k < count && spec.existing.size() > 2; ++k) {
     if (!spec.fixed.empty() && spec.fixed.front() == spec.existing.back()) {
@@ -239,6 +278,10 @@ model::RobotSpec with_friction(model::RobotSpec spec, std::uint64_t seed) {
 }
 
 model::RobotSpec with_strengths_times(model::RobotSpec spec, double factor) {
+  if (spec.kinds.empty()) {
+    spec.material.strength_vertical_n *= factor;
+    spec.material.strength_lateral_n *= factor;
+  }
   for (model::ModuleKind& kind : spec.kinds) {
     for (model::ConnectorLaw& law : kind.connectors) {
       law.strength_n *= factor;

@@ -22,6 +22,16 @@ inline constexpr std::array<base::Lattice, 4> kLattices = {base::kCubic, base::k
 /// can be turned.
 model::RobotSpec general_robot(const base::Lattice& lattice, std::uint64_t seed);
 
+/// Which of a robot's existing modules are fixed.
+enum class Fixed : std::uint8_t { kAll, kAllButOne, kSome, kFirst };
+inline constexpr std::array<Fixed, 4> kFixed = {Fixed::kAll, Fixed::kAllButOne, Fixed::kSome,
+                                                Fixed::kFirst};
+
+/// A robot of 2 to 7 modules on a floor, some of them fixed, and 2 to 7 planned ones, which may
+/// stand on the floor themselves; grown at random, the same for a seed everywhere. Every second one
+/// has a pitch of 10 mm, of which beams are stiff in bending, so that feet tilt.
+model::RobotSpec held_robot(const base::Lattice& lattice, std::uint64_t seed, Fixed fixed);
+
 /// The robot with its last `count` modules planned, as far as one that is not fixed and two more
 /// are left. It may be that nothing holds what is left.
 model::RobotSpec with_last_planned(model::RobotSpec spec, std::size_t count);
@@ -38,7 +48,7 @@ model::RobotSpec with_laws(model::RobotSpec spec, std::uint64_t seed);
 /// The robot with random friction at some of its obstacles and the floor.
 model::RobotSpec with_friction(model::RobotSpec spec, std::uint64_t seed);
 
-/// All limits of its kinds' connectors times a factor.
+/// All limits of its kinds' connectors times a factor, or without kinds the material's strengths.
 model::RobotSpec with_strengths_times(model::RobotSpec spec, double factor);
 
 /// A turn or mirror image that maps a lattice onto itself.

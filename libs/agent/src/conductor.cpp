@@ -642,6 +642,19 @@ Order Conductor::after_jacobi(const Setup& setup, const Report& report) {
 
 // ---- The end.
 
+namespace {
+
+/// Do supports hold by friction, so that forces say whether they slip?
+bool has_friction([[maybe_unused]] const Setup& setup) {
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+  return false;
+#else
+  return setup.has_friction;
+#endif
+}
+
+}  // namespace
+
 Order Conductor::after_corners(const Setup& setup, const Report& report) {
   if (is_seeking()) {
     other_fails_ = !report.corners.stable;
@@ -655,32 +668,13 @@ Order Conductor::after_corners(const Setup& setup, const Report& report) {
     // On a level floor the rigid body stands, so the corners are wrong; else they decide.
     return is_uneven() ? finish(Verdict::kUnstable, Reason::kTopples) : begin_unilateral(setup);
   }
+  // Whether facets slip is asked of both laws.
+  if (kHasSurroundings && is_second_ && has_friction(setup)) {
+    return ask(Operation::kLoads);
+  }
   Order hold = ask(Operation::kHold);
   hold.flags = kReleaseOpen;
   return hold;
-}
-
-Order Conductor::after_hold(const Report& report) {
-  if (is_comparing_ || report.count > 0) {
-    error_best_ = kUnbounded;
-    stagnation_count_ = 0;
-    target_ = is_uneven() ? kUnevenTolerance : kRatioTolerance;
-    begin_states();
-    return has_fronts() ? tree_iteration() : is_one_sweep() ? first_iteration() : move(0);
-  }
-  open_held_count_ = report.open_held_count();
-  if (kHasSurroundings && is_second_) {
-    const Order verdict = decide();
-    const bool is_final = open_held_count_ == 0 || answer_.verdict == Verdict::kUndecided;
-    return is_final ? verdict : free_open_feet();
-  }
-  if (is_uneven() && !is_standing_) {
-    return finish(Verdict::kUnstable, Reason::kTopples);
-  }
-  if (kHasSurroundings && weak_springs_ == WeakSprings::kToppling) {
-    return finish(Verdict::kUndecided, Reason::kNotConverged);
-  }
-  return ask(Operation::kLoads);
 }
 
 /// The law that has an answer for every robot.
@@ -703,6 +697,13 @@ void Conductor::note_worst(const Report& report) {
 Order Conductor::after_loads(const Setup& setup, const Report& report) {
   if (report.module_count() != effort_.module_count) {
     return finish(Verdict::kUndecided, Reason::kNeighbourSilent);
+  }
+  if (kHasSurroundings && is_second_) {
+    // It counts if no open facet has to let go.
+    answer_.reason = may_slip(report) ? Reason::kMaySlip : Reason::kNone;
+    Order hold = ask(Operation::kHold);
+    hold.flags = kReleaseOpen;
+    return hold;
   }
   note_worst(report);
   if (may_slip(report)) {

@@ -149,12 +149,11 @@ Order Conductor::first_iteration() {
     return factor();
   }
   // Where planned modules are condensed a kBegin leaves no residual: nobody has their weight yet,
-  // so this iteration moves nothing. A kResume has brought it.
+  // so this iteration moves nothing. A kResume has brought it. Where all that exists is fixed no
+  // error is left by it, but no contact state has been looked up either.
   const bool moves = !is_any_remote_ || is_resuming;
   is_spoiled_ = !moves;
-  Order iteration = restarted_iteration();
-  iteration.flags = static_cast<std::uint8_t>(iteration.flags | (moves ? 0U : kKeepStates));
-  return iteration;
+  return restarted_iteration(moves ? std::uint8_t{0} : kKeepStates);
 }
 
 Order Conductor::factor() { return ask(Operation::kFactor); }
@@ -168,7 +167,8 @@ Order Conductor::next_iteration(std::uint8_t flags, const std::array<float, 3>& 
       flags | (least_residual_ ? kLeastResidual : 0U) | (takes_clusters ? kWithClusters : 0U) |
       (holds_planned_ ? kHoldPlanned : 0U) | (stands_in_ ? kStandIn : 0U));
   kept_states_ =
-      is_newton_ ? stands_in_ || !is_solved_ : is_uneven() && !(error_ <= uneven_target());
+      (flags & kKeepStates) != 0 ||
+      (is_newton_ ? stands_in_ || !is_solved_ : is_uneven() && !(error_ <= uneven_target()));
   iteration.flags = static_cast<std::uint8_t>(iteration.flags | (kept_states_ ? kKeepStates : 0U));
   iteration.count = takes_clusters ? cluster_degree() : iteration_degree();
   iteration.reals = coefficients;
@@ -185,11 +185,11 @@ Order Conductor::next_iteration(std::uint8_t flags, const std::array<float, 3>& 
 /// not where M^-1 K has eigenvalues that are very small or above 2, as with clusters and with
 /// planned modules that stand still in M: there it makes no progress, and the energy is minimised
 /// as if.
-Order Conductor::restarted_iteration() {
+Order Conductor::restarted_iteration(std::uint8_t flags) {
   has_older_ = false;
   least_residual_ = is_tilting_ && !has_clusters() && !is_any_remote_ && !is_newton_;
   energy_bound_.restart();
-  return next_iteration(kRestart, {});
+  return next_iteration(static_cast<std::uint8_t>(kRestart | flags), {});
 }
 
 /// Reports of kIterate and kTreeIterate: bound on the error, largest ratio, the number of facets

@@ -195,4 +195,31 @@ Order Conductor::conclude(const Setup& setup) {
   return decide();
 }
 
+/// Open facets have let go, or none had to.
+Order Conductor::after_hold(const Report& report) {
+  if (is_comparing_ || report.count > 0) {
+    error_best_ = kUnbounded;
+    stagnation_count_ = 0;
+    target_ = is_uneven() ? kUnevenTolerance : kRatioTolerance;
+    begin_states();
+    return has_fronts() ? tree_iteration() : is_one_sweep() ? first_iteration() : move(0);
+  }
+  open_held_count_ = report.open_held_count();
+  if (kHasSurroundings && is_second_) {
+    if (answer_.reason == Reason::kMaySlip) {
+      return finish(Verdict::kUndecided, Reason::kMaySlip);
+    }
+    const Order verdict = decide();
+    const bool is_final = open_held_count_ == 0 || answer_.verdict == Verdict::kUndecided;
+    return is_final ? verdict : free_open_feet();
+  }
+  if (is_uneven() && !is_standing_) {
+    return finish(Verdict::kUnstable, Reason::kTopples);
+  }
+  if (kHasSurroundings && weak_springs_ == WeakSprings::kToppling) {
+    return finish(Verdict::kUndecided, Reason::kNotConverged);
+  }
+  return ask(Operation::kLoads);
+}
+
 }  // namespace holdfast::agent

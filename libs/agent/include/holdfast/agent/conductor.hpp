@@ -177,7 +177,7 @@ class Conductor {
   Order factor();
   Order tree_iteration();
   Order next_iteration(std::uint8_t flags, const std::array<float, 3>& coefficients);
-  Order restarted_iteration();
+  Order restarted_iteration(std::uint8_t flags = 0);
   Order jumped_iteration(const Setup& setup, const Report& report);
   Order leave_clusters(const Setup& setup);
   Order after_stagnation(const Setup& setup);
@@ -336,7 +336,7 @@ class Conductor {
   std::uint8_t stagnation_count_ = 0;
   bool holds_planned_ = false;  ///< Planned modules stand still in M (one-sweep methods), ...
   bool held_planned_ = false;   ///< ... as they did in the last iteration.
-  bool kept_states_ = false;    ///< The last iteration was not good enough to tell contact states.
+  bool kept_states_ = false;    ///< The last iteration did not look contact states up.
   std::array<std::uint32_t, kSeenMax> seen_{};
   std::uint8_t seen_count_ = 0;
   // One-sweep methods.
