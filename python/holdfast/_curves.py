@@ -108,6 +108,6 @@ def draw_order(found: Order, figure: Any) -> Any:
     _limit(margin, 0, _MARGIN_WORDS)
     margin.set_xlabel('step')
     titles = {'found': f'an order of {counted(len(found.batches), "step")}',
-              'none': 'there is no safe order', 'not-found': 'no order was found'}
+              'none': 'there is no safe order in one piece', 'not-found': 'no order was found'}
     figure.suptitle(titles[found.outcome.value])
     return figure

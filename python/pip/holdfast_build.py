@@ -21,7 +21,7 @@ Version: {version}
 Summary: Will a modular robot hold? Mechanical verdicts for reconfiguration steps
 License: Apache-2.0
 Requires-Python: >=3.9
-Requires-Dist: numpy>=1.24
+Requires-Dist: numpy>=1.24,<2
 """
 
 

@@ -79,11 +79,12 @@ int run_certificate(const StepsArguments& options) {
   }
   if (!options.is_quiet) {
     const std::size_t blocked_count = check.value().blocked_count;
-    fmt::print("PROVED      there is no safe order: {} replayed, and {}\n",
-               host::counted(check.value().state_count, "state"),
-               blocked_count == 0
-                   ? "no step leads any further"
-                   : fmt::format("{} just beyond, none of which is safe", blocked_count));
+    fmt::print(
+        "PROVED      there is no safe order that keeps the robot in one piece: {} replayed, and "
+        "{}\n",
+        host::counted(check.value().state_count, "state"),
+        blocked_count == 0 ? "no step leads any further"
+                           : fmt::format("{} just beyond, none of which is safe", blocked_count));
   }
   return kExitSafe;
 }

@@ -169,14 +169,14 @@ std::string order_text(const OrderReport& report) {
   if (order.outcome == OrderOutcome::kNotFound) {
     const std::string why =
         order.undecided_count == 0
-            ? "no order found in the time given; there may be one\n"
+            ? "no order found before the search ended; there may be one\n"
             : fmt::format("every order leads through states that are undecided, {} at one end\n",
                           order.undecided_count);
     return "NOT FOUND   " + why + furthest_words(report) + examined;
   }
   if (order.outcome == OrderOutcome::kNone) {
-    return "NONE        there is no safe order\n" + none_words(report) + help_words(report) +
-           examined;
+    return "NONE        there is no safe order that keeps the robot in one piece\n" +
+           none_words(report) + help_words(report) + examined;
   }
   std::string text = fmt::format("FOUND       {}, every state {} is safe\n",
                                  host::counted(order.steps.size(), "step"),
