@@ -5,7 +5,7 @@
 // Expected values are those of statics.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { readFileSync, writeFileSync } from 'node:fs';
+import { readFileSync, rmSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
 import {
@@ -362,6 +362,72 @@ test('a load is put on a module and counts as statics say; removing the module t
   await clickFace(page, [0, 0, 2], [1, 0, 0]);
   assert.ok(Math.abs((await ratio()) - WEIGHT / 11.98) < 6e-4, 'and off again');
   assert.deepEqual(page.faults, []);
+});
+
+test('every number that is typed is judged and saved as the program judges it', async () => {
+  // Each field of the forms in turn, straight down and slanting gravity, up and down in size: the page's answer is
+  // the program's for the file that the page saves, and the file says what was typed.
+  const page = await openPage(browser);
+  const folder = temporaryFolder();
+  const file = path.join(folder, 'typed.json');
+  const check = async (typed) => {
+    await settled(page);
+    const saved = await savedJson(page);
+    writeFileSync(file, JSON.stringify(saved));
+    let report;
+    try {
+      report = execFileSync(program, ['check', '--quiet', '--json', '-', file], { stdio: ['ignore', 'pipe', 'ignore'] });
+    } catch (error) {
+      assert.ok(error.status === 1 || error.status === 2, `${typed}: exit code ${error.status}`);
+      report = error.stdout;
+    }
+    const truth = JSON.parse(report);
+    assert.equal(await verdict(page), truth.verdict, typed);
+    const ratio = await page.evaluate(() => globalThis.holdfast.app.finding.answer.load_ratio_max);
+    assert.ok(
+      ratio === truth.load_ratio_max || Math.abs(ratio - truth.load_ratio_max) <= 1e-9 * Math.max(1, ratio),
+      `${typed}: ${ratio} on the page, ${truth.load_ratio_max} by the program`,
+    );
+    return saved;
+  };
+  const fill = async (label, value) => {
+    const field = page.getByLabel(label, { exact: true });
+    await field.fill(String(value));
+    await field.press('Enter');
+  };
+  for (const example of ['arm_breaks_a', 'arm_tips_b']) {
+    await openExample(page, example);
+    for (const value of [-30, -19.62, -4, -9.81, -1e-3]) {
+      await fill('Gravity z', value);
+      const { gravity_m_s2: own, material } = await check(`gravity ${value}`);
+      const said = own?.[2] ?? -(material?.gravity_m_s2 ?? 9.81);
+      assert.equal(said, value, 'what was typed is in the file');
+    }
+    await fill('Gravity x', 0.5);
+    await fill('Gravity z', -12);
+    assert.deepEqual((await check('slanting')).gravity_m_s2, [0.5, 0, -12]);
+    await fill('Gravity x', 0);
+    const upright = await check('upright again');
+    assert.equal(upright.gravity_m_s2?.[2] ?? -upright.material.gravity_m_s2, -12);
+    await fill('Slope', 15);
+    await fill('Slope', 0);
+    const level = await check('level again');
+    assert.equal(level.gravity_m_s2?.[2] ?? -level.material.gravity_m_s2, -12, 'turned to and fro');
+    // All fields of the material: half as much again, and back.
+    const fields = page.locator('#material input');
+    for (let i = 0; i < (await fields.count()) - 1; ++i) {
+      const before = await fields.nth(i).inputValue();
+      const typed = Number((Number(before) * 0.9).toPrecision(8));
+      await fields.nth(i).fill(String(typed));
+      await fields.nth(i).press('Enter');
+      const saved = await check(`material ${i}: ${typed}`);
+      assert.ok(typed === 0 || Object.values(saved.material).some((value) => value === typed), `${typed} is in the file`);
+      await fields.nth(i).fill(before);
+      await fields.nth(i).press('Enter');
+    }
+  }
+  assert.deepEqual(page.faults, []);
+  rmSync(folder, { recursive: true });
 });
 
 const FULL = {

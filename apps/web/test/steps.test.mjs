@@ -182,6 +182,57 @@ test('what is built is recorded, judged and saved as steps that the program acce
   assert.deepEqual(page.faults, []);
 });
 
+test('what is taken away by hand is a step, and a recording ends with its robot', async () => {
+  const page = await openPage(browser);
+  await open(page, file('post', { modules: [[0, 0, 0], [1, 0, 0], [0, 0, 1]] }));
+  await page.click('#record');
+  await clickFace(page, [0, 0, 1], [0, 0, 1]);
+  await page.evaluate(() => globalThis.holdfast.bench.remove([[0, 0, 2]]));
+  assert.match(await page.textContent('#sequence-text'), /Recording: 2 steps/);
+  await open(page, file('another', { modules: [[0, 0, 0], [0, 0, 1], [1, 0, 1]] }));
+  assert.equal(await page.textContent('#record'), 'Record steps');
+  assert.match(await message(page), /recording has ended/);
+  assert.equal(await page.evaluate(() => globalThis.holdfast.bench.robot.name), 'another');
+  assert.deepEqual(page.faults, []);
+});
+
+test('no colours of the computation or of a collapse outlive the robot they were of', async () => {
+  const page = await openPage(browser);
+  await openExample(page, 'arm_tips_b');
+  const stale = () =>
+    page.evaluate(() => {
+      const { app: { view }, bench: { robot } } = globalThis.holdfast;
+      const shown = [...view.modules.tints.slice(0, 3 * robot.count)];
+      view.paint();
+      return view.hasOwnColours || shown.some((value, i) => value !== view.modules.tints[i]);
+    });
+  const changes = [
+    () => globalThis.holdfast.bench.edit('more', [[0, 0, 3]], 0),
+    () => globalThis.holdfast.bench.history.undo(),
+    () => globalThis.holdfast.bench.surround('the floor', { support_z: null }),
+    () => globalThis.holdfast.bench.surround('the floor', { support_z: undefined }),
+  ];
+  for (const change of changes) {
+    await page.click('#simulate');
+    await page.waitForFunction(() => globalThis.holdfast.player.trace && globalThis.holdfast.app.view.paintOver);
+    await page.evaluate(change);
+    await settled(page);
+    assert.equal(await stale(), false, String(change));
+  }
+  // A collapse leaves the player's colours as they were.
+  await page.click('#simulate');
+  await page.waitForFunction(() => globalThis.holdfast.player.trace && globalThis.holdfast.app.view.paintOver);
+  const kept = await page.evaluate(() => {
+    const { view } = globalThis.holdfast.app;
+    const before = view.paintOver;
+    view.showMechanism(new Float64Array(6 * globalThis.holdfast.bench.robot.count), [0]);
+    view.showMechanism(undefined, []);
+    return view.paintOver === before;
+  });
+  assert.ok(kept);
+  assert.deepEqual(page.faults, []);
+});
+
 test('an order is found that the program finds too, and the robot grows by it', async () => {
   const page = await openPage(browser);
   const place = path.join(temporaryFolder(), 'order.json');

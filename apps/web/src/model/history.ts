@@ -16,6 +16,8 @@ export type Change = Step['what'];
 export class History {
   private done: Step[] = [];
   private undone: Step[] = [];
+  /** Whether the last change took one back. */
+  isUndoing = false;
 
   constructor(
     public robot: EditedRobot,
@@ -53,6 +55,7 @@ export class History {
     const step: Step = { label, what: 'robot', before: this.robot, after };
     if (this.robot.count === 0 && !this.canUndo && !this.canRedo) {
       this.apply(step, true);
+      this.isUndoing = false;
       this.changed('robot');
     } else {
       this.do(step);
@@ -82,6 +85,7 @@ export class History {
       this.apply(step, isForward);
       from.pop();
       to.push(step);
+      this.isUndoing = !isForward;
       this.changed(step.what);
     }
     return step?.label;
@@ -92,6 +96,7 @@ export class History {
     this.apply(step, true);
     this.done.push(step);
     this.undone = [];
+    this.isUndoing = false;
     this.changed(step.what);
   }
 

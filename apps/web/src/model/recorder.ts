@@ -18,7 +18,7 @@ function cellsOf(robot: EditedRobot): Map<string, Cell> {
 const isSame = (a: readonly Cell[] = [], b: readonly Cell[] = []) =>
   a.length === b.length && new Set([...a, ...b].map(String)).size === a.length;
 
-/** Makes a step of every change of a robot's modules; what is taken back is no step. */
+/** Makes a step of every change of a robot's modules; what is undone is no step. */
 export class Recorder {
   /** As it was when the recording began. */
   readonly start: EditedRobot;
@@ -30,8 +30,8 @@ export class Recorder {
     this.cells = cellsOf(robot);
   }
 
-  /** Takes notice of what has changed. */
-  follow(robot: EditedRobot): void {
+  /** Takes notice of what has changed; `isUndoing`: by taking back what was done before. */
+  follow(robot: EditedRobot, isUndoing: boolean): void {
     const now = cellsOf(robot);
     const missing = (from: Map<string, Cell>, other: Map<string, Cell>) =>
       [...from].filter(([text]) => !other.has(text)).map(([, cell]) => cell);
@@ -41,7 +41,7 @@ export class Recorder {
     if (attach.length + detach.length === 0) {
       return;
     }
-    if (last && isSame(last.attach, detach) && isSame(last.detach, attach)) {
+    if (isUndoing && last && isSame(last.attach, detach) && isSame(last.detach, attach)) {
       this.steps.pop();
       return;
     }

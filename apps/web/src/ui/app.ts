@@ -164,6 +164,8 @@ export class App {
     const { robot, history } = this.bench;
     this.toppling.stop();
     this.exhibit = undefined;
+    // Colours of the robot as it was are not this one's, however soon its answer comes.
+    this.view.paintOver = undefined;
     this.view.point([]);
     this.pointedCell = undefined;
     this.whereNext.reset();

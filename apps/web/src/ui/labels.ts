@@ -13,7 +13,7 @@ export function placeLabels(stage: Stage, view: RobotView, robot: EditedRobot, f
   const labels = byId('labels');
   const { worst } = view;
   const answer = finding?.answer;
-  if (worst === undefined || !answer || view.paintOver) {
+  if (worst === undefined || !answer || view.hasOwnColours) {
     labels.replaceChildren();
     return;
   }

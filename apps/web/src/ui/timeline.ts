@@ -4,6 +4,7 @@ import { CoreClient, Cancelled } from '../core/client';
 import type { JudgedSteps, StageLoads, StageReport } from '../core/types';
 import { Role } from '../model/cell';
 import type { EditedRobot } from '../model/edited_robot';
+import type { Change } from '../model/history';
 import { Recorder } from '../model/recorder';
 import { STAGES, Sequence, type StageRobot } from '../model/sequence';
 import type { App } from './app';
@@ -42,7 +43,7 @@ export class Timeline {
   private question = 0;
 
   constructor(private readonly app: App) {
-    app.bench.robotListeners.push(() => this.changed());
+    app.bench.robotListeners.push((what) => this.changed(what));
     app.stage.motions.push((now) => this.animate(now));
     this.button('stage-back', 'stepBack', () => this.step(-1));
     this.button('stages-play', 'play', () => this.toggle());
@@ -116,12 +117,14 @@ export class Timeline {
   }
 
   /** The robot is another one: what was judged is not its own any more. */
-  private changed(): void {
-    const { robot } = this.app.bench;
-    this.recorder?.follow(robot);
-    if (this.recorder && this.recorder.start.lattice !== robot.lattice) {
+  private changed(what?: Change): void {
+    const { robot, history } = this.app.bench;
+    if (this.recorder && what === 'robot') {
+      const { steps } = this.recorder;
       this.recorder = undefined;
+      tell(`The recording has ended, as another robot is here; ${counted(steps.length, 'step')} of it are not kept.`);
     }
+    this.recorder?.follow(robot, history.isUndoing);
     this.showRecording();
     this.forget();
     clearTimeout(this.timer);

@@ -89,8 +89,10 @@ export class RobotView {
   private hasFaces = false;
   private mechanism?: Float64Array;
   scale: ScaleName = 'paper';
-  /** Colours of modules that have their own, by slot; the trace player's. */
+  /** Colours of modules that have their own, by slot; the trace player's. Until another robot is shown. */
   paintOver?: (slot: number) => Rgb | undefined;
+  /** Slots of modules that give way while a collapse is shown, in place of all other colours. */
+  private yielding?: ReadonlySet<number>;
   private pointed: readonly number[] = [];
 
   constructor(private readonly stage: Stage) {
@@ -138,7 +140,7 @@ export class RobotView {
     this.drawn.forEach((slot, i) => {
       const role = robot.roleAt(slot);
       const isBroken = !isUnstable && loads?.isBroken[slot] === 1;
-      const own = this.paintOver?.(slot);
+      const own = this.ownColour(slot);
       const colour = own ?? this.colour(role, loads?.ratio[slot], isBroken, isUnstable);
       const isPlanned = role === Role.kPlanned;
       this.modules.tints.set(isPlanned && !own ? mix(colour, WHITE, 0.38) : colour, 3 * i);
@@ -149,8 +151,20 @@ export class RobotView {
     });
     this.pointed.forEach((slot) => this.mark(slot, Pattern.kPointed));
     this.modules.update(this.drawn.length, 'tint', 'pattern');
-    this.collar.visible = this.worst !== undefined && !this.paintOver;
+    this.collar.visible = this.worst !== undefined && !this.hasOwnColours;
     this.stage.draw();
+  }
+
+  /** Colours tell something else than loads now. */
+  get hasOwnColours(): boolean {
+    return this.paintOver !== undefined || this.yielding !== undefined;
+  }
+
+  private ownColour(slot: number): Rgb | undefined {
+    if (this.yielding) {
+      return this.yielding.has(slot) ? brokenColour(this.scale) : undefined;
+    }
+    return this.paintOver?.(slot);
   }
 
   /** Rims around some modules, and around no others; costs what they are, not what the robot is. */
@@ -281,9 +295,8 @@ export class RobotView {
 
   /** Velocities of a collapse in place of displacements, six for each slot, and modules that give way. */
   showMechanism(mechanism: Float64Array | undefined, yielding: readonly number[]): void {
-    const isYielding = new Set(yielding);
     this.mechanism = mechanism;
-    this.paintOver = mechanism && ((slot) => (isYielding.has(slot) ? brokenColour(this.scale) : undefined));
+    this.yielding = mechanism && new Set(yielding);
     this.placeMotions();
     this.modules.update(this.drawn.length, 'motion', 'turn');
     this.paint();
@@ -327,7 +340,7 @@ export class RobotView {
 
   private markWorst(): void {
     const { worst } = this;
-    this.collar.visible = worst !== undefined && !this.paintOver;
+    this.collar.visible = worst !== undefined && !this.hasOwnColours;
     if (worst !== undefined) {
       const direction = this.lattice.units[this.judged!.answer.connections[3 * worst + 2]];
       this.collar.position.copy(this.connectionPoint(worst));
