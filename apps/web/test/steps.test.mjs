@@ -8,7 +8,9 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
-import { clickFace, count, dropFile, launch, openPage, program, repository, settled, temporaryFolder, verdict } from './browser.mjs';
+import {
+  clickFace, count, dropFile, launch, message, openExample, openPage, program, repository, settled, temporaryFolder, verdict,
+} from './browser.mjs';
 
 let browser;
 before(async () => (browser = await launch()));
