@@ -391,7 +391,8 @@ expect_exit 0 simulate --quiet --allow-unknown noted.json
 expect_line err "note: .*'colour_scheme'"
 # Once, where both outputs go to one place; on standard error and in the report, where they do not.
 json '"modules": [[0,0,0]], "colour_scheme": 3, "planned": [[0,0,1]]' >noted_steps.json
-for words in 'check --allow-unknown noted.json' 'simulate --allow-unknown noted.json' 'simulate --allow-unknown --steps noted_steps.json' \
+for words in 'check --allow-unknown noted.json' 'simulate --allow-unknown noted.json' \
+  'simulate --allow-unknown --steps noted_steps.json' \
   'simulate --allow-unknown --stages noted_steps.json'; do
   # shellcheck disable=SC2086
   "$program" $words >both 2>&1 </dev/null
