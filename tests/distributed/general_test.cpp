@@ -315,6 +315,7 @@ TEST(DistributedGeneral, rows_of_prisms_are_exact_next_to_the_edge) {
     spec.support_z = std::nullopt;
     spec.obstacles = {{.from = {}, .to = {}, .cells = {{0, 0, -1}}}};
     spec.own_masses = {{{0, 0, 0}, 1e-6 * (x - y)}, {{0, 1, 0}, 1e-6 * y}};
+    spec.material.elastic_modulus_mpa = 1e11;  // Bending takes the centre of mass nowhere.
     int count = 0;
     for (const test::Symmetry& symmetry : test::symmetries(spec.lattice)) {
       model::RobotSpec moved = test::turned(spec, symmetry);

@@ -18,6 +18,12 @@
 namespace holdfast {
 namespace {
 
+/// So stiff that bending leaves the centre of mass where it is; loads are the same to the last bit.
+model::RobotSpec stiff(model::RobotSpec spec) {
+  spec.material.elastic_modulus_mpa *= 1 << 20;
+  return spec;
+}
+
 using solver::Method;
 using Vec = base::Vec6<double>;
 
@@ -145,7 +151,7 @@ TEST(SeveralSolutions, all_that_are_found_fulfil_the_law) {
 
 /// Load ratios go with one over the strength, so a strength can be chosen for each case.
 TEST(SeveralSolutions, give_a_verdict_only_where_they_agree) {
-  model::RobotSpec spec = test::standing_robot(94);
+  model::RobotSpec spec = stiff(test::standing_robot(94));
   const auto first = verdict::assess(make_robot(spec));
   ASSERT_TRUE(first.several && first.several->unilateral);
   const verdict::LoadRange paper = first.several->regularised;
@@ -190,7 +196,7 @@ TEST(SeveralSolutions, are_known_to_all_digits_where_the_answer_is) {
 
 /// A proof is of one solution, and decides nothing about the others.
 TEST(SeveralSolutions, that_do_not_agree_are_not_decided_by_a_proof) {
-  model::RobotSpec spec = test::standing_robot(94);
+  model::RobotSpec spec = stiff(test::standing_robot(94));
   const auto first = verdict::assess(make_robot(spec));
   ASSERT_TRUE(first.several && first.several->unilateral);
   const double strength = (first.several->regularised.high + first.several->unilateral->low) / 2;

@@ -213,7 +213,7 @@ TEST(FacadeProperties, an_error_names_the_cell_and_the_rule) {
       {{{0, 0, 0}}, {{0, 0, 1}, {0, 4, 2}}, {}, "(0,4,2)", "touches neither"},
       {{{0, 0, 0}}, {}, {{0, 0, 1}}, "(0,0,1)", "holds no existing module"},
       {{{0, 0, 4}, {0, 0, 3}}, {}, {}, "(0,0,3)", "nothing holds the robot"},
-      {{{0, 0, 0}, {0, 0, -1}}, {}, {}, "(0,0,-1)", "directly below"}};
+      {{{0, 0, 0}, {0, 0, -1}}, {}, {}, "(0,0,-1)", "below the ground"}};
   for (const Fault& fault : faults) {
     const auto robot =
         make_robot({.existing = fault.existing, .planned = fault.planned, .fixed = fault.fixed});

@@ -13,6 +13,9 @@
 namespace holdfast::plan {
 namespace {
 
+/// Of how far bending moves the centre of mass.
+constexpr double kSwayRounding = 1e-6;
+
 using base::Vec6;
 using solver::kLaneCount;
 using solver::LaneBlock;
@@ -190,7 +193,53 @@ bool CandidateJudge::prepare(const RobotSymmetry& symmetry) {
   contact_.emplace(robot_, spec_.floor, *influence_, options_.equilibrium.is_bonded, sites_);
   begins_stuck_ = is_stuck();
   find_inverse();
+  find_sway();
   return make_screen();
+}
+
+/// How loads move the centre of mass along x and y: by Maxwell and Betti as masses that pull there
+/// move the modules.
+void CandidateJudge::find_sway() {
+  if (is_held_ || !finder_.has_polygon() || options_.equilibrium.is_bonded) {
+    return;
+  }
+  std::vector<LaneBlock> pulls(influence_->slot_count());
+  const auto& displacement = influence_->displacement();
+  for (std::size_t module = 0; module < displacement.size(); ++module) {
+    const double mass = robot_.mass(module);
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      pulls[influence_->slot(module)].values[axis][axis] += mass;
+      moment_alone_[axis] += mass * displacement[module][axis];
+    }
+    mass_alone_ += mass;
+  }
+  influence_->solve(pulls);
+  sway_.resize(displacement.size());
+  for (std::size_t module = 0; module < displacement.size(); ++module) {
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      for (std::size_t k = 0; k < 6; ++k) {
+        sway_[module][axis][k] = pulls[influence_->slot(module)].values[k][axis];
+      }
+    }
+  }
+}
+
+/// Whether bending surely leaves the centre of mass over the polygon, where the new module moves by
+/// `own`: else a check decides, and says so.
+bool CandidateJudge::stays_over_polygon(const Waiting& waiting, const Vec6<double>& own) const {
+  if (sway_.empty()) {
+    return true;
+  }
+  const double own_mass = robot_.material().mass_kg;
+  std::array<double, 2> moment = moment_alone_;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    moment[axis] += own_mass * own[axis];
+    for (const PointLoad& point : loads_of(waiting.grown)) {
+      moment[axis] += base::dot(sway_[point.module][axis], point.load);
+    }
+  }
+  const double shift = std::hypot(moment[0], moment[1]) / (mass_alone_ + own_mass);
+  return waiting.margin_mm && shift * (1 + kSwayRounding) < *waiting.margin_mm;
 }
 
 /// What bounds need of K^-1 and of that of a softened robot takes some factorizations: worth it
@@ -323,7 +372,8 @@ std::size_t CandidateJudge::judge(std::span<const base::Cell> cells,
       auto waiting = look_at(cells[begin], judged[begin]);
       const auto ratio = waiting ? screened(*waiting) : std::nullopt;
       if (ratio) {
-        conclude(*waiting, *ratio);
+        const auto hosts = host_displacements(waiting->grown);
+        conclude(*waiting, *ratio, waiting->grown.node->displacement(hosts));
       } else {
         undecided[begin] = std::move(waiting);
       }
@@ -511,7 +561,7 @@ void CandidateJudge::judge_together(std::span<Waiting> lanes, std::vector<Waitin
         continue;
       }
     }
-    conclude(one, std::max(solved.largest[lane], new_ratio(one.site, hosts, own)));
+    conclude(one, std::max(solved.largest[lane], new_ratio(one.site, hosts, own)), own);
   }
 }
 
@@ -557,9 +607,12 @@ CandidateJudge::Solved CandidateJudge::solve_where_it_matters(std::span<const Wa
   return solved;
 }
 
-void CandidateJudge::conclude(const Waiting& waiting, double ratio) const {
+void CandidateJudge::conclude(const Waiting& waiting, double ratio, const Vec6<double>& own) const {
   const double doubt = kNearLimit * std::max(1.0, std::abs(ratio));
   if (!std::isfinite(ratio) || std::abs(ratio - 1) <= doubt) {
+    return;
+  }
+  if (ratio < 1 && !stays_over_polygon(waiting, own)) {
     return;
   }
   const Verdict loaded = ratio > 1 ? Verdict::kOverload : Verdict::kSafe;

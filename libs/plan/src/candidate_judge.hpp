@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -71,7 +72,9 @@ class CandidateJudge {
                                 std::span<solver::LaneBlock> more) const;
   void judge_together(std::span<Waiting> lanes, std::vector<Waiting>& again) const;
   void judge_fully(std::vector<Waiting> waiting) const;
-  void conclude(const Waiting& waiting, double ratio) const;
+  void conclude(const Waiting& waiting, double ratio, const base::Vec6<double>& own) const;
+  void find_sway();
+  bool stays_over_polygon(const Waiting& waiting, const base::Vec6<double>& own) const;
 
   std::vector<PointLoad> loads_of(const Grown& grown) const;
   double new_ratio(const Site& site, std::span<const base::Vec6<double>> hosts,
@@ -96,6 +99,11 @@ class CandidateJudge {
   std::optional<LaneRatios> ratios_;
   mutable std::once_flag facets_made_;
   mutable std::unique_ptr<FacetInfluence> facets_;
+
+  // Without the new module, where the polygon decides; else empty.
+  std::array<double, 2> moment_alone_{};  ///< Of the masses, by displacements along x and y, kg mm.
+  double mass_alone_ = 0;
+  std::vector<std::array<base::Vec6<double>, 2>> sway_;  ///< By module; kg mm per unit load.
 
   // What the screen goes by; none if the robot without candidates is not certain.
   std::optional<Grown> alone_;

@@ -82,7 +82,7 @@ class MoveFinder {
       const Cell other = difference(axial_, away);
       return is_taken(other) && is_step(difference(to, other)) && rolls(to, other);
     };
-    if (std::ranges::none_of(steps(), is_beside)) {
+    if (lattice_ == base::kHexagonalPrism && std::ranges::none_of(steps(), is_beside)) {
       return true;
     }
     return std::ranges::any_of(steps(), [&](const Cell& away) {
@@ -100,15 +100,21 @@ class MoveFinder {
   /// Whether a ball, or a disc, can roll to a cell, axial, about a carrier that both cells touch,
   /// alone or with another such module, without coming nearer than a pitch to anybody else.
   bool can_roll(const Cell& to, const Cell& carrier) const {
-    const auto is_clear = [&](const Cell& second) {
-      const auto arc = RollingArc::about(lattice_, axial_, to, carrier, second);
-      return arc && is_above_floor(*arc) && !is_barred(*arc, carrier) && !is_barred(*arc, second);
-    };
-    return is_clear(carrier) || std::ranges::any_of(steps(), [&](const Cell& away) {
+    const auto alone = RollingArc::about(lattice_, axial_, to, carrier);
+    if (alone && is_above_floor(*alone) && !is_barred(*alone, carrier)) {
+      return true;
+    }
+    // A disc does not leave its plane.
+    return lattice_ == base::kFaceCentred && std::ranges::any_of(steps(), [&](const Cell& away) {
              const Cell second = difference(axial_, away);
              return second != carrier && is_module(second) && is_step(difference(to, second)) &&
-                    rolls(to, second) && is_clear(second);
+                    (can_roll_along(to, carrier, second) || can_roll_along(to, second, carrier));
            });
+  }
+
+  bool can_roll_along(const Cell& to, const Cell& first, const Cell& second) const {
+    const RollingArc arc = RollingArc::about(lattice_, axial_, to, first, second);
+    return is_above_floor(arc) && !is_barred(arc, first) && !is_barred(arc, second);
   }
 
   bool is_above_floor(const RollingArc& arc) const {

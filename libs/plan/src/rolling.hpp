@@ -15,12 +15,15 @@ class RollingArc {
  public:
   using Place = std::array<double, 3>;
 
-  /// About `first`, or about the line through it and `second`; cells are axial, and both ends touch
-  /// them. Of the two ways about a line or a ball it is the shorter one; no value for ends that lie
-  /// on opposite sides, between which all are as long.
+  /// About the centre of one ball, the shorter way; cells are axial, and both ends touch it. No
+  /// value for ends on opposite sides, between which all ways are as long.
   static std::optional<RollingArc> about(const base::Lattice& lattice, const base::Cell& from,
-                                         const base::Cell& to, const base::Cell& first,
-                                         const base::Cell& second);
+                                         const base::Cell& to, const base::Cell& carrier);
+
+  /// About the line through two that both ends touch, from the first to the second: counted
+  /// clockwise for who looks that way. Exchanged, they give the other way round.
+  static RollingArc about(const base::Lattice& lattice, const base::Cell& from,
+                          const base::Cell& to, const base::Cell& first, const base::Cell& second);
 
   /// Whether a ball on the way overlaps the one at a node by more than rounding.
   bool sweeps(const Place& node) const;
@@ -29,8 +32,6 @@ class RollingArc {
   double lowest() const;
 
  private:
-  RollingArc(const Place& centre, const Place& start, const Place& end);
-
   double largest_along(const Place& vector) const;
 
   Place centre_{};
