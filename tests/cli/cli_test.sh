@@ -261,7 +261,7 @@ expect_exit 64 robots roffi
 expect_line err 'none of the catalogue'
 expect_exit 0 check --robot rofi "$safe"
 expect_exit 65 check --robot smores-ep wall.json
-expect_line err '/material: of the robot smores-ep no mass_kg is published'
+expect_line err 'of the robot smores-ep no mass_kg is published'
 
 # A number out of range is told with its place.
 printf '{"format": "holdfast-structure", "version": 1, "modules": [{"cell": [0,0,0]}],

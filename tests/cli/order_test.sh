@@ -26,7 +26,8 @@ structure() { printf '{"format": "holdfast-structure", "version": 1, %s}' "$2" >
 structure tower.json '"modules": [[0,0,0], [0,0,1], [0,0,2]]'
 structure other.json '"modules": [[0,0,0]], "support_z": -1, "oops": 1'
 structure planned.json '"modules": [[0,0,0]], "planned": [[0,0,1]]'
-expect_exit 0 order tower.json --from other.json
+expect_exit 65 order tower.json --from other.json
+expect_exit 0 order tower.json --from other.json --allow-unknown
 expect_line err "other.json: note: /oops: the key 'oops' is unknown"
 expect_line err "other.json: note: only its cells are taken, all else is the target's, "\
 "which differs in support_z"
