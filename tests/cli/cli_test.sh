@@ -442,6 +442,35 @@ code=0
 cmp -s in.json kept.json || fault "an input has changed"
 expect_exit 0 check "$safe" --json /dev/null --svg /dev/null
 
+# Standard output is one output's or the text's: with every option that its help says writes a file.
+for command in check steps simulate emulate next order move; do
+  case $command in
+    steps) arguments="$repository/scenarios/plan/walk_over_beam.json" ;;
+    order) arguments="$repository/scenarios/plan/counterweight.json" ;;
+    move) arguments="$overload $overload" ;;
+    *) arguments=$overload ;;
+  esac
+  options=$("$program" "$command" --help |
+    sed -nE 's/^  (-o,)?(--(json|csv|svg|vtk|html|certificate|trace|story|output)) FILE.*/\2/p')
+  [ -n "$options" ] || fault "$command: its help names no output"
+  for option in $options; do
+    # shellcheck disable=SC2086
+    "$program" $command $arguments $option - >out 2>err || true
+    if grep -qE '^(OVERLOAD|SAFE|UNSTABLE|UNDECIDED|FOUND|NONE) ' out; then
+      fault "$command $option -: the text is on standard output, too"
+    fi
+  done
+done
+# What is written as one format is not named as another.
+for arguments in "check $safe --svg a.png" "check $safe --vtk a.vtk" "check $safe --html a.PDF" \
+  "check $safe --json a.xml" "next $safe --svg a.json" \
+  "order $repository/scenarios/plan/counterweight.json -o a.xml"; do
+  # shellcheck disable=SC2086
+  expect_exit 64 $arguments
+  expect_line err 'what is written is '
+done
+expect_exit 0 check "$safe" --svg a.picture --json plain
+
 # A full disk and a closed output are errors of every command.
 for arguments in "check $safe" "check $safe --json -" "simulate $safe --link unit" \
   "simulate $safe --link unit --story -" "generate cube 3" "generate cube 30" "--help"; do
