@@ -23,8 +23,11 @@ class Verdict(str, enum.Enum):
     """Not certain; the reasons say why."""
 
     # What is printed does not depend on the version of Python.
-    __str__ = str.__str__
-    __format__ = str.__format__
+    def __str__(self) -> str:
+        return self.value
+
+    def __format__(self, format_spec: str) -> str:
+        return format(self.value, format_spec)
 
     @staticmethod
     def from_code(code: int) -> Verdict:
