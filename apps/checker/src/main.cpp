@@ -69,8 +69,7 @@ const char* caveat(certificate::Law law) {
       return "for one solution of the paper's contact law, which may have others";
     case certificate::Law::kBonded:
       return "for supports that can neither lift nor tilt: where a robot only rests on them, it "
-             "may "
-             "topple all the same";
+             "may topple all the same";
     case certificate::Law::kUnilateral:
       break;
   }

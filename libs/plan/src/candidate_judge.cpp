@@ -231,10 +231,11 @@ bool CandidateJudge::stays_over_polygon(const Waiting& waiting, const Vec6<doubl
     return true;
   }
   const double own_mass = robot_.material().mass_kg;
+  const std::vector<PointLoad> loads = loads_of(waiting.grown);
   std::array<double, 2> moment = moment_alone_;
   for (std::size_t axis = 0; axis < 2; ++axis) {
     moment[axis] += own_mass * own[axis];
-    for (const PointLoad& point : loads_of(waiting.grown)) {
+    for (const PointLoad& point : loads) {
       moment[axis] += base::dot(sway_[point.module][axis], point.load);
     }
   }
@@ -370,10 +371,9 @@ std::size_t CandidateJudge::judge(std::span<const base::Cell> cells,
   team.share(0, cells.size(), [&](std::size_t begin, std::size_t end) {
     for (; begin < end; ++begin) {
       auto waiting = look_at(cells[begin], judged[begin]);
-      const auto ratio = waiting ? screened(*waiting) : std::nullopt;
-      if (ratio) {
-        const auto hosts = host_displacements(waiting->grown);
-        conclude(*waiting, *ratio, waiting->grown.node->displacement(hosts));
+      const auto found = waiting ? screened(*waiting) : std::nullopt;
+      if (found) {
+        conclude(*waiting, found->ratio, found->own);
       } else {
         undecided[begin] = std::move(waiting);
       }
@@ -486,7 +486,7 @@ bool CandidateJudge::sticks(const Waiting& waiting) const {
 }
 
 /// The largest load ratio, where bounds suffice to know it. Settles the facets if need be.
-std::optional<double> CandidateJudge::screened(Waiting& waiting) const {
+std::optional<CandidateJudge::Bounded> CandidateJudge::screened(Waiting& waiting) const {
   if (!screen_) {
     return std::nullopt;
   }
@@ -501,13 +501,14 @@ std::optional<double> CandidateJudge::screened(Waiting& waiting) const {
 }
 
 /// The largest load ratio in the contact states found so far, as far as bounds tell.
-std::optional<double> CandidateJudge::bounded(const Waiting& waiting) const {
+std::optional<CandidateJudge::Bounded> CandidateJudge::bounded(const Waiting& waiting) const {
   std::vector<PointLoad> loads;
   LoadChange change = change_of(waiting.grown, loads);
   change.loads = loads;
   const auto hosts = host_displacements(waiting.grown);
-  return screen_->largest(change,
-                          new_ratio(waiting.site, hosts, waiting.grown.node->displacement(hosts)));
+  const Vec6<double> own = waiting.grown.node->displacement(hosts);
+  const auto ratio = screen_->largest(change, new_ratio(waiting.site, hosts, own));
+  return ratio ? std::optional(Bounded{*ratio, own}) : std::nullopt;
 }
 
 /// Whole solutions, lanes by lanes: each of these counts as a chunk of a team's work.

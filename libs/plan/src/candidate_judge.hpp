@@ -58,8 +58,15 @@ class CandidateJudge {
   std::optional<Waiting> look_at(const base::Cell& cell, std::optional<Candidate>& judged) const;
   std::optional<Grown> settled(const Site& site) const;
   bool sticks(const Waiting& waiting) const;
-  std::optional<double> screened(Waiting& waiting) const;
-  std::optional<double> bounded(const Waiting& waiting) const;
+
+  /// What bounds say of a candidate.
+  struct Bounded {
+    double ratio = 0;        ///< The largest load ratio.
+    base::Vec6<double> own;  ///< How the new module moves.
+  };
+
+  std::optional<Bounded> screened(Waiting& waiting) const;
+  std::optional<Bounded> bounded(const Waiting& waiting) const;
   LoadChange change_of(const Grown& grown, std::vector<PointLoad>& loads) const;
 
   /// A group of solutions.

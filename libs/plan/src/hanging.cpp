@@ -9,6 +9,7 @@
 
 #include "holdfast/model/lattice_beam.hpp"
 #include "holdfast/plan/stages.hpp"
+#include "vector3.hpp"
 #include "way.hpp"
 
 namespace holdfast::plan {
@@ -16,20 +17,9 @@ namespace {
 
 using base::Cell;
 using base::Vec6;
-using Vector3 = std::array<double, 3>;
 
 /// Facets whose distances to the group differ by less than this share of a pitch are equally near.
 constexpr double kNearestTie = 1e-6;
-
-Vector3 plus(const Vector3& a, double factor, const Vector3& b) {
-  return {a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]};
-}
-
-Vector3 cross(const Vector3& a, const Vector3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /// From a cell's node to where a module of the group is at a waypoint, in pitches. In whole numbers
 /// first, so that it does not depend on where the robot is.

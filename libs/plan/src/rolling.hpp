@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <optional>
 
 #include "holdfast/base/lattice.hpp"
+#include "vector3.hpp"
 
 namespace holdfast::plan {
 
@@ -13,8 +13,6 @@ namespace holdfast::plan {
 /// a ball that it touches, or about the line through the centres of two. It keeps touching them.
 class RollingArc {
  public:
-  using Place = std::array<double, 3>;
-
   /// About the centre of one ball, the shorter way; cells are axial, and both ends touch it. No
   /// value for ends on opposite sides, between which all ways are as long.
   static std::optional<RollingArc> about(const base::Lattice& lattice, const base::Cell& from,
@@ -26,17 +24,17 @@ class RollingArc {
                           const base::Cell& to, const base::Cell& first, const base::Cell& second);
 
   /// Whether a ball on the way overlaps the one at a node by more than rounding.
-  bool sweeps(const Place& node) const;
+  bool sweeps(const Vector3& node) const;
 
   /// The smallest height on the way.
   double lowest() const;
 
  private:
-  double largest_along(const Place& vector) const;
+  double largest_along(const Vector3& vector) const;
 
-  Place centre_{};
-  Place start_{};     ///< From the centre.
-  Place sideways_{};  ///< As long, a quarter turn further.
+  Vector3 centre_{};
+  Vector3 start_{};     ///< From the centre.
+  Vector3 sideways_{};  ///< As long, a quarter turn further.
   double angle_ = 0;
 };
 

@@ -4,17 +4,13 @@
 
 #include <cmath>
 
+#include "vector3.hpp"
+
 namespace holdfast::plan {
 namespace {
 
 using base::Mat6;
 using base::Vec6;
-
-Vector3 cross(const Vector3& a, const Vector3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /// Force and moment at the end of a bar along d whose other end is held.
 Vec6<double> end_force(const BarSection& s, double length, const Vector3& d,
