@@ -270,7 +270,7 @@ TEST(BadInput, of_json_names_what_was_found_and_what_is_allowed) {
   bad(R"("modules": [], "name": 5)", "/name", "found 5, expected is a string");
   bad(R"("modules": [], "material": {"mass_kg": "1"})", "/material/mass_kg", "a number");
   bad(R"("modules": [], "later_steps": [[[0,0]]])", "/later_steps/0/0", "an array of 2");
-  bad(R"("modules": [], "known_answer": {"margin_mm": 1})", "/known_answer/verdict", "''");
+  bad(R"("modules": [], "known_answer": {"margin_mm": 1})", "/known_answer", "\"verdict\"");
 }
 
 TEST(BadInput, that_visiblesim_could_not_hold_is_refused) {
@@ -279,13 +279,13 @@ TEST(BadInput, that_visiblesim_could_not_hold_is_refused) {
                     "/visiblesim/" + std::string(where), ""});
   };
   bad(R"("world": {"grid size": "1"})", "world/grid size");
-  bad(R"("world": {"gridSize": "1"})", "world/gridSize");
+  bad(R"("world": {"gridSize": "1"})", "world");
   bad(R"("world": {"": "1"})", "world/");
   bad(R"("world": {"a": 1})", "world/a");
   bad(R"("parameters": {"globalMass": "1"})", "parameters/globalMass");
   bad(R"("scenery": [{"element": "blockList"}])", "scenery");
   bad(R"("scenery": [{"element": "<camera>"}])", "scenery/0/element");
-  bad(R"("scenery": [{}])", "scenery/0/element");
+  bad(R"("scenery": [{}])", "scenery/0");
   bad(R"("targets": [{"element": "target", "attributes": {"format": "grid"}}])", "targets");
   expect_refusal({json(R"("modules": [{"cell": [0,0,0], "attributes": {"position": "1,1,1"}}])"),
                   "/modules/0/attributes/position", "key of its own"});

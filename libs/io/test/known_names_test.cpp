@@ -49,8 +49,10 @@ void collect(const Json& whole, const Json& part, std::vector<const Json*>& foun
     collect(whole, whole.at(Json::json_pointer(ref.substr(1))), found);
   }
   for (const char* const several : {"oneOf", "allOf"}) {
-    for (const Json& one : part.value(several, Json::array())) {
-      collect(whole, one, found);
+    if (const auto cases = part.find(several); cases != part.end()) {
+      for (const Json& one : *cases) {
+        collect(whole, one, found);
+      }
     }
   }
   found.push_back(&part);
@@ -84,6 +86,9 @@ void find_objects(const Json& whole, const Json& part, const Json& value,
                   const Json::json_pointer& place, std::vector<Object>& objects) {
   std::vector<const Json*> parts;
   collect(whole, part, parts);
+  if (!value.is_structured()) {
+    return;
+  }
   if (value.is_object()) {
     objects.push_back({place, parts});
   }
@@ -218,7 +223,10 @@ TEST(KnownNames, errors_name_places_that_are_in_the_document) {
     if (error.where.starts_with("/")) {
       EXPECT_TRUE(leads(document, error.where)) << error.where << ": " << error.message << text;
     }
-    EXPECT_EQ(error.message.find("found null, expected is \""), std::string::npos);
+    // What is missing is not called null.
+    if (error.message.starts_with("found null,")) {
+      EXPECT_TRUE(document[Json::json_pointer(error.where)].is_null()) << error.where << text;
+    }
   };
   const auto places = places_in(whole, Json::json_pointer());
   for (const auto& place : places) {

@@ -267,11 +267,13 @@ TEST(VisibleSimExtension, holds_what_only_version_2_says) {
   EXPECT_EQ(document.extension.own, (std::vector<OwnParameters>{{0, 0, "battery", 0.3}}));
   EXPECT_TRUE(document.modules[0].attributes.empty());
 
-  EXPECT_TRUE(contains(
-      all(accepted(read_visiblesim(world(
-                       "", "", R"(<holdfast><extension>{"weather": 1}</extension></holdfast>)")))
-              .warnings),
-      "'weather' is unknown"));
+  const std::string weather =
+      world("", "", R"(<holdfast><extension>{"weather": 1}</extension></holdfast>)");
+  const auto unknown = read_visiblesim(weather);
+  ASSERT_FALSE(unknown);
+  EXPECT_TRUE(contains(unknown.error().message, "'weather' is unknown, expected robot, "));
+  EXPECT_TRUE(contains(all(accepted(read_visiblesim(weather, {.allow_unknown = true})).warnings),
+                       "'weather' is unknown"));
   const Document moon =
       accepted(read_visiblesim(
                    R"(<parameters globalSupportZ="3"/><world><blockList/><holdfast><extension>
