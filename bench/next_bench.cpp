@@ -107,13 +107,12 @@ void run(const Case& what) {
   const auto count = static_cast<double>(cells.size());
   fmt::print(
       "{:8} {:5} load {:4.2f} {:5} modules {:5} cells: {:6.1f} ms in all {:7.0f} /s, again {:6.1f} "
-      "ms {:7.0f} /s, by checks {:5.0f} /s; {} full solutions, {} checks; safe {} overload {} "
+      "ms {:7.0f} /s, by checks {:5.0f} /s; {} checks; safe {} overload {} "
       "unstable {} undecided {}; {} of {} differ\n",
       what.family, what.size, what.load, spec.existing.size(), cells.size(),
       1e3 * timed.first_seconds, count / timed.first_seconds, 1e3 * timed.again_seconds,
       count / timed.again_seconds, static_cast<double>(some.size()) / check_seconds,
-      fast.solution_count, fast.check_count, counts[0], counts[1], counts[2], counts[3],
-      different_count, some.size());
+      fast.check_count, counts[0], counts[1], counts[2], counts[3], different_count, some.size());
 }
 
 }  // namespace

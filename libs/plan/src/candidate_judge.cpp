@@ -31,29 +31,9 @@ constexpr double kErrorShareMax = 1e-9;
 /// What displacements for loads on all facets may take.
 constexpr std::size_t kFacetBytesMax = std::size_t{1} << 29U;
 
-/// By which connections are softened, each times its weight: the less the sharper, and the less the
-/// more do energies lose to rounding.
-constexpr double kSoftening = 1.0 / 16;
-
-/// Softened stiffness takes another factorization. It is worth it where more than one in so many
-/// of at least so many candidates would take a whole solution.
-constexpr std::size_t kUndecidedShare = 8;
-constexpr std::size_t kSampleSize = 64;
-
-/// What a screen takes, in factorizations, times how much cheaper it has to be: two inverses of
-/// twice as much each, and a factorization.
-constexpr double kScreenProducts = 10;
-
 /// A candidate takes some dense systems of as many unknowns as rows of facets yield, a check some
 /// time per module: above so many cubed rows per module checks are faster.
 constexpr std::size_t kCubedRowsPerModule = 8000;
-
-/// So many connections, those with the largest load ratios before, are looked at first: mostly the
-/// largest afterwards is theirs.
-constexpr std::size_t kFirstContenders = 8;
-
-/// Where more than one of so many connections may decide, all displacements are found.
-constexpr std::size_t kWholeShare = 2;
 
 /// Pairs of hosts of one site, each pair once.
 std::vector<solver::Edge> pairs_of(const std::vector<Site>& sites) {
@@ -94,31 +74,6 @@ std::vector<std::size_t> hosts_of(const std::vector<Site>& sites) {
   return hosts;
 }
 
-/// Those and what they are connected with.
-std::vector<std::size_t> with_neighbours(std::vector<std::size_t> modules,
-                                         const model::Robot& robot) {
-  const std::size_t count = modules.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    for (const std::int32_t beside : robot.connected()[modules[i]]) {
-      if (beside != model::Robot::kNoNeighbour) {
-        modules.push_back(base::at(beside));
-      }
-    }
-  }
-  return modules;
-}
-
-template <class Predicate>
-std::size_t count_if(auto& range, const Predicate& predicate) {
-  return static_cast<std::size_t>(std::ranges::count_if(range, predicate));
-}
-
-double middle_of(std::vector<double>& values) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
 std::size_t yielding_rows(const Grown& grown) {
   std::size_t count = 0;
   for (const Vec6<double>& force : grown.facet_forces) {
@@ -126,19 +81,6 @@ std::size_t yielding_rows(const Grown& grown) {
         std::ranges::count_if(force, [](double component) { return component != 0; }));
   }
   return count;
-}
-
-/// f' Z f for loads on some modules, and Z between these.
-double energy_of(const solver::InverseStiffness& inverse, std::span<const PointLoad> loads) {
-  double energy = 0;
-  for (std::size_t i = 0; i < loads.size(); ++i) {
-    for (std::size_t j = 0; j <= i; ++j) {
-      const Vec6<double> u =
-          base::multiply(inverse.between(loads[i].module, loads[j].module), loads[j].load);
-      energy += (i == j ? 1 : 2) * base::dot(loads[i].load, u);
-    }
-  }
-  return energy;
 }
 
 }  // namespace
@@ -178,7 +120,6 @@ bool CandidateJudge::prepare(const RobotSymmetry& symmetry) {
       sites_.push_back(std::move(site));
     }
   }
-  hosts_ = hosts_of(sites_);
   solver::EquilibriumOptions direct = options_.equilibrium;
   direct.method = solver::Method::kDirect;
   direct.fill_max = kJudgedFillMax;
@@ -194,7 +135,7 @@ bool CandidateJudge::prepare(const RobotSymmetry& symmetry) {
   begins_stuck_ = is_stuck();
   find_inverse();
   find_sway();
-  return make_screen();
+  return begins_stuck_ || pays();
 }
 
 /// How loads move the centre of mass along x and y: by Maxwell and Betti as masses that pull there
@@ -243,23 +184,10 @@ bool CandidateJudge::stays_over_polygon(const Waiting& waiting, const Vec6<doubl
   return waiting.margin_mm && shift * (1 + kSwayRounding) < *waiting.margin_mm;
 }
 
-/// What bounds need of K^-1 and of that of a softened robot takes some factorizations: worth it
-/// where whole solutions for all candidates take several times as much.
-bool CandidateJudge::may_screen() const {
-  const double whole = static_cast<double>(sites_.size()) * influence_->solution_product_count();
-  return kScreenProducts * static_cast<double>(influence_->factor_product_count()) <= whole;
-}
-
+/// K^-1 between the hosts of modules that are more than a load.
 void CandidateJudge::find_inverse() {
-  const bool is_for_all = may_screen();
-  const std::vector<Site> sites = is_for_all ? sites_ : stiffening(sites_);
-  const std::vector<std::size_t> hosts = hosts_of(sites);
-  const std::vector<std::size_t> modules = is_for_all ? with_neighbours(hosts, robot_) : hosts;
-  const std::vector<solver::Edge> pairs = pairs_of(sites);
-  influence_->find_inverse({.modules = modules,
-                            .pairs = pairs,
-                            .is_any_connected = is_for_all,
-                            .thread_count = options_.equilibrium.thread_count});
+  const std::vector<Site> sites = stiffening(sites_);
+  influence_->find_inverse(hosts_of(sites), pairs_of(sites), options_.equilibrium.thread_count);
 }
 
 bool CandidateJudge::is_stuck() const {
@@ -271,123 +199,29 @@ bool CandidateJudge::is_stuck() const {
          });
 }
 
-/// From the robot without candidates, in its own contact states; false if checks are faster.
-bool CandidateJudge::make_screen() {
-  std::vector<Vec6<double>> displacement = influence_->displacement();
-  if (begins_stuck_) {
-    alone_.emplace();
-  } else {
-    alone_ = settled({});
-    if (!alone_) {
-      return true;
-    }
-    const std::size_t rows = yielding_rows(*alone_);
-    if (rows * rows * rows > kCubedRowsPerModule * robot_.modules().size()) {
-      return false;
-    }
-  }
-  if (!may_screen()) {
-    return true;
-  }
-  if (!begins_stuck_) {
-    std::vector<LaneBlock> more(influence_->slot_count());
-    for (const PointLoad& point : loads_of(*alone_)) {
-      for (std::size_t k = 0; k < 6; ++k) {
-        more[influence_->slot(point.module)].values[k][0] += point.load[k];
-      }
-    }
-    influence_->solve(more);
-    for (std::size_t module = 0; module < displacement.size(); ++module) {
-      displacement[module] = this->displacement(module, 0, more);
-    }
-  }
-  screen_.emplace(robot_, *influence_, displacement);
-  sharpen_screen();
-  return true;
+/// Whether candidates of a robot some of whose facets yield take less this way than by checks.
+bool CandidateJudge::pays() const {
+  const auto alone = settled({});
+  const std::size_t rows = alone ? yielding_rows(*alone) : 0;
+  return rows * rows * rows <= kCubedRowsPerModule * robot_.modules().size();
 }
 
-/// Makes bounds sharper, as far as a sample of the candidates says that it is worth it.
-void CandidateJudge::sharpen_screen() {
-  std::vector<Waiting> sample;
-  std::vector<double> energies;
-  std::vector<double> ratios;
-  const std::size_t stride = std::max<std::size_t>(1, sites_.size() / kSampleSize);
-  for (std::size_t i = 0; i < sites_.size(); i += stride) {
-    std::optional<Candidate> judged;
-    if (auto waiting = look_at(sites_[i].cell, judged)) {
-      std::vector<PointLoad> loads;
-      energies.push_back(change_of(waiting->grown, loads).energy);
-      const auto hosts = host_displacements(waiting->grown);
-      ratios.push_back(new_ratio(sites_[i], hosts, waiting->grown.node->displacement(hosts)));
-      sample.push_back(*std::move(waiting));
-    }
-  }
-  if (sample.empty()) {
-    return;
-  }
-  const double target = std::max(middle_of(ratios), screen_->ratio_max());
-  screen_->keep_columns(target, energies, sites_.size());
-  if (!begins_stuck_) {
-    return;
-  }
-  const auto is_undecided = [&](const Waiting& waiting) { return !bounded(waiting).has_value(); };
-  if (target > 0 && sites_.size() > kSampleSize &&
-      kUndecidedShare * count_if(sample, is_undecided) > sample.size()) {
-    soften(target);
-  }
-  if (2 * count_if(sample, is_undecided) > sample.size()) {
-    screen_.reset();  // What it saves is less than what it takes.
-    return;
-  }
-  const std::size_t uncertain_count =
-      count_if(sample, [&](const Waiting& waiting) { return !sticks(waiting); });
-  // Of each facet six solutions, or one of each candidate whose facets are uncertain.
-  if (6 * influence_->facets().size() * sample.size() < uncertain_count * sites_.size()) {
-    screen_facets_ = facets();
-  }
-  if (2 * count_if(sample, [&](Waiting& waiting) { return !screened(waiting).has_value(); }) >
-      sample.size()) {
-    screen_.reset();
-  }
-}
-
-/// Softer connections, K - s sum of w_e K_e, take up more energy from the same loads f: with
-/// phi(s) = f' (K - s sum of w_e K_e)^-1 f the energies e_e of the connections are bounded by
-///   sum of w_e e_e = phi'(0) <= (phi(s) - phi(0)) / s,   as phi is convex.
-void CandidateJudge::soften(double target) {
-  std::vector<double> weights = screen_->weights(target);
-  std::vector<double> factors;
-  std::ranges::transform(weights, std::back_inserter(factors),
-                         [](double weight) { return 1 - kSoftening * weight; });
-  softened_ = influence_->inverse_of(
-      factors, {.modules = hosts_, .thread_count = options_.equilibrium.thread_count});
-  screen_->set_weights(std::move(weights));
-}
-
-std::size_t CandidateJudge::judge(std::span<const base::Cell> cells,
-                                  std::span<std::optional<Candidate>> judged) const {
-  std::vector<std::optional<Waiting>> undecided(cells.size());
+void CandidateJudge::judge(std::span<const base::Cell> cells,
+                           std::span<std::optional<Candidate>> judged) const {
+  std::vector<std::optional<Waiting>> found(cells.size());
   host::Team team(options_.equilibrium.thread_count, cells.size());
   team.share(0, cells.size(), [&](std::size_t begin, std::size_t end) {
     for (; begin < end; ++begin) {
-      auto waiting = look_at(cells[begin], judged[begin]);
-      const auto found = waiting ? screened(*waiting) : std::nullopt;
-      if (found) {
-        conclude(*waiting, found->ratio, found->own);
-      } else {
-        undecided[begin] = std::move(waiting);
-      }
+      found[begin] = look_at(cells[begin], judged[begin]);
     }
   });
   std::vector<Waiting> waiting;
-  for (std::optional<Waiting>& one : undecided) {
+  for (std::optional<Waiting>& one : found) {
     if (one) {
       waiting.push_back(*std::move(one));
     }
   }
-  const std::size_t count = waiting.size();
   judge_fully(std::move(waiting));
-  return count;
 }
 
 bool CandidateJudge::has_host_for(const Site& site) const {
@@ -438,79 +272,6 @@ std::optional<CandidateJudge::Waiting> CandidateJudge::look_at(
                  .result = &judged};
 }
 
-/// The loads of the new module, and by how much facets bear more than without it.
-LoadChange CandidateJudge::change_of(const Grown& grown, std::vector<PointLoad>& loads) const {
-  loads = grown.host_loads;
-  LoadChange change{.energy = energy_of(influence_->inverse(), loads)};
-  if (softened_ && loads.size() == 1 && grown.facet_forces.empty()) {
-    change.weighted_energy = (energy_of(*softened_, loads) - change.energy) / kSoftening;
-  }
-  const bool has_facets = !grown.facet_forces.empty() || !alone_->facet_forces.empty();
-  const std::size_t facet_count = has_facets ? influence_->facets().size() : 0;
-  std::vector<std::size_t> changed;
-  std::vector<Vec6<double>> forces(facet_count);
-  for (std::size_t facet = 0; facet < facet_count; ++facet) {
-    for (std::size_t k = 0; k < 6; ++k) {
-      forces[facet][k] = (grown.facet_forces.empty() ? 0 : grown.facet_forces[facet][k]) -
-                         (alone_->facet_forces.empty() ? 0 : alone_->facet_forces[facet][k]);
-    }
-    if (forces[facet] != Vec6<double>{}) {
-      changed.push_back(facet);
-      loads.push_back({.module = influence_->facets()[facet].module,
-                       .load = facets_->load(facet, forces[facet])});
-    }
-  }
-  for (const std::size_t facet : changed) {
-    Vec6<double> motion{};  // Of the facet, under all forces on facets and twice those on hosts.
-    for (const std::size_t other : changed) {
-      base::add_to(motion, base::multiply(facets_->between(facet, other), forces[other]));
-    }
-    for (const PointLoad& point : grown.host_loads) {
-      for (std::size_t i = 0; i < 6; ++i) {
-        motion[i] += 2 * base::dot(facets_->displacement(point.module, facet, i), point.load);
-      }
-    }
-    change.energy += base::dot(forces[facet], motion);
-  }
-  return change;
-}
-
-/// Whether all facets surely stick, as they do without the new module.
-bool CandidateJudge::sticks(const Waiting& waiting) const {
-  const std::vector<PointLoad>& loads = waiting.grown.host_loads;
-  const auto hosts = host_displacements(waiting.grown);
-  const Footing footing = contact_->footing_if_stuck(
-      waiting.site, waiting.grown.node->displacement(hosts), loads,
-      std::sqrt(energy_of(influence_->inverse(), loads)), screen_facets_);
-  return footing.is_certain && !footing.is_slipping;
-}
-
-/// The largest load ratio, where bounds suffice to know it. Settles the facets if need be.
-std::optional<CandidateJudge::Bounded> CandidateJudge::screened(Waiting& waiting) const {
-  if (!screen_) {
-    return std::nullopt;
-  }
-  if (begins_stuck_ && !waiting.grown.is_settled && !sticks(waiting)) {
-    auto grown = screen_facets_ != nullptr ? settled(waiting.site) : std::nullopt;
-    if (!grown) {
-      return std::nullopt;
-    }
-    waiting.grown = *std::move(grown);
-  }
-  return bounded(waiting);
-}
-
-/// The largest load ratio in the contact states found so far, as far as bounds tell.
-std::optional<CandidateJudge::Bounded> CandidateJudge::bounded(const Waiting& waiting) const {
-  std::vector<PointLoad> loads;
-  LoadChange change = change_of(waiting.grown, loads);
-  change.loads = loads;
-  const auto hosts = host_displacements(waiting.grown);
-  const Vec6<double> own = waiting.grown.node->displacement(hosts);
-  const auto ratio = screen_->largest(change, new_ratio(waiting.site, hosts, own));
-  return ratio ? std::optional(Bounded{*ratio, own}) : std::nullopt;
-}
-
 /// Whole solutions, lanes by lanes: each of these counts as a chunk of a team's work.
 void CandidateJudge::judge_fully(std::vector<Waiting> waiting) const {
   // Loads on modules that are eliminated together reach much the same columns.
@@ -545,15 +306,15 @@ void CandidateJudge::judge_together(std::span<Waiting> lanes, std::vector<Waitin
       }
     }
   }
-  const Solved solved = solve_where_it_matters(lanes, more);
+  influence_->solve(more);
+  const LaneRatios::PerLane largest = ratios_->largest(more);
   for (std::size_t lane = 0; lane < lanes.size(); ++lane) {
     Waiting& one = lanes[lane];
     const auto hosts = host_displacements(one, lane, more);
     const Vec6<double> own = one.grown.node->displacement(hosts);
     if (!one.grown.is_settled) {
       one.grown.footing = contact_->footing_if_stuck(
-          one.site, own, solved.facet_count,
-          [&](std::size_t module) { return displacement(module, lane, more); });
+          one.site, own, [&](std::size_t module) { return displacement(module, lane, more); });
       if (!one.grown.footing.is_certain) {
         if (auto grown = settled(one.site)) {
           one.grown = *std::move(grown);
@@ -562,50 +323,8 @@ void CandidateJudge::judge_together(std::span<Waiting> lanes, std::vector<Waitin
         continue;
       }
     }
-    conclude(one, std::max(solved.largest[lane], new_ratio(one.site, hosts, own)), own);
+    conclude(one, std::max(largest[lane], new_ratio(one.site, hosts, own)), own);
   }
-}
-
-/// The displacements of hosts, and of the ends of all connections and facets that matter. By the
-/// energy of the loads all other facets stick, and no other connection has a larger load ratio than
-/// the largest of those that have the largest ones before.
-CandidateJudge::Solved CandidateJudge::solve_where_it_matters(std::span<const Waiting> lanes,
-                                                              std::span<LaneBlock> more) const {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const solver::LaneNumbers energies = influence_->begin_solution(more);
-  std::vector<std::size_t> slots;
-  for (const Waiting& one : lanes) {
-    for (const Link& link : one.site.links) {
-      slots.push_back(influence_->slot(link.host));
-    }
-  }
-  const std::size_t first_count = std::min(kFirstContenders, ratios_->connection_count());
-  ratios_->add_slots(first_count, slots);
-  std::vector<std::uint8_t> is_found;
-  influence_->find_solution(more, slots, is_found);
-  Solved solved;
-  solved.largest.fill(-kInfinity);
-  solved.largest = ratios_->largest(more, 0, first_count, solved.largest);
-  std::size_t count = first_count;
-  for (std::size_t lane = 0; lane < lanes.size(); ++lane) {
-    const double root = std::isnan(energies[lane]) ? kInfinity : std::sqrt(energies[lane]);
-    count = std::max(count, ratios_->contender_count(solved.largest[lane], root));
-    if (!lanes[lane].grown.is_settled) {
-      solved.facet_count = std::max(solved.facet_count, contact_->uncertain_count(root));
-    }
-  }
-  if (kWholeShare * count > ratios_->connection_count()) {
-    influence_->end_solution(more, is_found);
-  } else {
-    slots.clear();
-    ratios_->add_slots(count, slots);
-    for (std::size_t i = 0; i < solved.facet_count; ++i) {
-      slots.push_back(influence_->slot(contact_->uncertain_module(i)));
-    }
-    influence_->find_solution(more, slots, is_found);
-  }
-  solved.largest = ratios_->largest(more, first_count, count, solved.largest);
-  return solved;
 }
 
 void CandidateJudge::conclude(const Waiting& waiting, double ratio, const Vec6<double>& own) const {
@@ -650,28 +369,6 @@ std::vector<Vec6<double>> CandidateJudge::host_displacements(
   std::vector<Vec6<double>> hosts;
   for (const Link& link : waiting.site.links) {
     hosts.push_back(displacement(link.host, lane, more));
-  }
-  return hosts;
-}
-
-/// The same from the blocks of K^-1 between them, and the facets' influence on them.
-std::vector<Vec6<double>> CandidateJudge::host_displacements(const Grown& grown) const {
-  std::vector<Vec6<double>> hosts;
-  for (const PointLoad& host : grown.host_loads) {
-    Vec6<double> u = influence_->displacement()[host.module];
-    for (const PointLoad& point : grown.host_loads) {
-      base::add_to(
-          u, base::multiply(influence_->inverse().between(host.module, point.module), point.load));
-    }
-    for (std::size_t facet = 0; facet < grown.facet_forces.size(); ++facet) {
-      for (std::size_t i = 0; i < 6; ++i) {
-        const Vec6<double>& column = facets_->displacement(host.module, facet, i);
-        for (std::size_t k = 0; k < 6; ++k) {
-          u[k] += grown.facet_forces[facet][i] * column[k];
-        }
-      }
-    }
-    hosts.push_back(u);
   }
   return hosts;
 }

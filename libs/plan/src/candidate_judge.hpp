@@ -15,7 +15,6 @@
 #include "holdfast/solver/influence.hpp"
 #include "holdfast/verdict/rigid_body.hpp"
 #include "lane_ratios.hpp"
-#include "ratio_screen.hpp"
 #include "robot_symmetry.hpp"
 #include "site.hpp"
 
@@ -31,9 +30,7 @@ class CandidateJudge {
                                               const CandidateOptions& options);
 
   /// Leaves out those that need a check. The bits of a judgement do not depend on the other cells.
-  /// Returns how many took a whole solution.
-  std::size_t judge(std::span<const base::Cell> cells,
-                    std::span<std::optional<Candidate>> judged) const;
+  void judge(std::span<const base::Cell> cells, std::span<std::optional<Candidate>> judged) const;
 
  private:
   /// A stable candidate on its way through loads.
@@ -46,37 +43,14 @@ class CandidateJudge {
 
   CandidateJudge(const model::RobotSpec& spec, const CandidateOptions& options, model::Robot robot);
   bool prepare(const RobotSymmetry& symmetry);
-  bool may_screen() const;
   void find_inverse();
-  bool make_screen();
-  void sharpen_screen();
-  void soften(double target);
   bool is_stuck() const;
+  bool pays() const;
   bool has_host_for(const Site& site) const;
   const FacetInfluence* facets() const;
 
   std::optional<Waiting> look_at(const base::Cell& cell, std::optional<Candidate>& judged) const;
   std::optional<Grown> settled(const Site& site) const;
-  bool sticks(const Waiting& waiting) const;
-
-  /// What bounds say of a candidate.
-  struct Bounded {
-    double ratio = 0;        ///< The largest load ratio.
-    base::Vec6<double> own;  ///< How the new module moves.
-  };
-
-  std::optional<Bounded> screened(Waiting& waiting) const;
-  std::optional<Bounded> bounded(const Waiting& waiting) const;
-  LoadChange change_of(const Grown& grown, std::vector<PointLoad>& loads) const;
-
-  /// A group of solutions.
-  struct Solved {
-    LaneRatios::PerLane largest{};  ///< Load ratio of the robot's connections.
-    std::size_t facet_count = 0;    ///< So many of GrownContact's may not stick.
-  };
-
-  Solved solve_where_it_matters(std::span<const Waiting> lanes,
-                                std::span<solver::LaneBlock> more) const;
   void judge_together(std::span<Waiting> lanes, std::vector<Waiting>& again) const;
   void judge_fully(std::vector<Waiting> waiting) const;
   void conclude(const Waiting& waiting, double ratio, const base::Vec6<double>& own) const;
@@ -86,7 +60,6 @@ class CandidateJudge {
   std::vector<PointLoad> loads_of(const Grown& grown) const;
   double new_ratio(const Site& site, std::span<const base::Vec6<double>> hosts,
                    const base::Vec6<double>& own) const;
-  std::vector<base::Vec6<double>> host_displacements(const Grown& grown) const;
   std::vector<base::Vec6<double>> host_displacements(const Waiting& waiting, std::size_t lane,
                                                      std::span<const solver::LaneBlock> more) const;
   base::Vec6<double> displacement(std::size_t module, std::size_t lane,
@@ -98,9 +71,8 @@ class CandidateJudge {
   SiteFinder finder_;
   verdict::GrowingRigidBody rigid_;
   bool is_held_ = false;
-  bool begins_stuck_ = true;        ///< All facets of the robot without candidates are stuck.
-  std::vector<Site> sites_;         ///< Where a module can be, by ascending cell.
-  std::vector<std::size_t> hosts_;  ///< Of all sites, each once.
+  bool begins_stuck_ = true;  ///< All facets of the robot without candidates are stuck.
+  std::vector<Site> sites_;   ///< Where a module can be, by ascending cell.
   std::unique_ptr<solver::Influence> influence_;
   std::optional<GrownContact> contact_;
   std::optional<LaneRatios> ratios_;
@@ -111,12 +83,6 @@ class CandidateJudge {
   std::array<double, 2> moment_alone_{};  ///< Of the masses, by displacements along x and y, kg mm.
   double mass_alone_ = 0;
   std::vector<std::array<base::Vec6<double>, 2>> sway_;  ///< By module; kg mm per unit load.
-
-  // What the screen goes by; none if the robot without candidates is not certain.
-  std::optional<Grown> alone_;
-  const FacetInfluence* screen_facets_ = nullptr;  ///< None: energies alone tell that they stick.
-  std::optional<RatioScreen> screen_;
-  std::unique_ptr<const solver::InverseStiffness> softened_;  ///< See soften().
 };
 
 }  // namespace holdfast::plan

@@ -145,8 +145,7 @@ std::vector<Candidate> CandidateSearch::judge_each(std::span<const base::Cell> c
     report.preparation_seconds = watch.seconds();
     for (std::size_t first = 0; first < cells.size(); first += kStride) {
       const std::size_t count = std::min(kStride, cells.size() - first);
-      report.solution_count +=
-          judge->judge(cells.subspan(first, count), std::span(judged).subspan(first, count));
+      judge->judge(cells.subspan(first, count), std::span(judged).subspan(first, count));
       tell(first + count);
     }
   }

@@ -163,7 +163,7 @@ class GrownContact::System {
     for (std::size_t i = 0; i < count; ++i) {
       for (std::size_t j = 0; j < count; ++j) {
         between_hosts_.push_back(
-            contact_.influence_.inverse().between(site_.links[i].host, site_.links[j].host));
+            contact_.influence_.between(site_.links[i].host, site_.links[j].host));
         stiffness_.push_back(node_.stiffness(i, j));
       }
     }
@@ -321,10 +321,6 @@ GrownContact::GrownContact(const model::Robot& robot, const model::Touch& floor,
     }
   }
   nodes_.try_emplace(std::pair(std::vector<base::Direction>{}, -1));
-  for (std::size_t i = 0; i < influence.facets().size(); ++i) {
-    by_root_.emplace_back(stuck_energy_root(i), i);
-  }
-  std::ranges::sort(by_root_);
 }
 
 FacetState GrownContact::own_facet(const ContactState& state) const {
@@ -474,62 +470,6 @@ std::optional<Grown> GrownContact::stuck(const Site& site) const {
     return std::nullopt;
   }
   return grown(site, own, *std::move(step), {});
-}
-
-/// The largest root of the energy of a change under which a facet surely sticks, and does not slip;
-/// not more than 0 if it need not. A spring of stiffness H with the energy e bears at most the root
-/// of H e; where a torque reaches the edge a facet tilts, where forces sideways reach their limit
-/// it slips.
-double GrownContact::stuck_energy_root(std::size_t facet) const {
-  constexpr double kRoom = 0.999;
-  const FacetState& state = influence_.facets()[facet];
-  if (is_bonded_ || state.is_bonded) {
-    return std::numeric_limits<double>::infinity();
-  }
-  const auto& ground = influence_.law().ground();
-  const auto rise = [&](std::size_t i) { return std::sqrt(ground.stiffness[i]); };
-  const Vec trial = influence_.law().trial_force(state, influence_.displacement()[state.module]);
-  double root = std::numeric_limits<double>::infinity();
-  for (const std::size_t k : {std::size_t{3}, std::size_t{4}}) {
-    root = std::min(root, (-trial[2] * ground.half_width - std::abs(trial[k])) /
-                              (rise(2) * ground.half_width + rise(k)));
-  }
-  if (const auto friction = robot_.facets()[facet].touch.friction) {
-    root = std::min(root, (-trial[2] * *friction - std::hypot(trial[0], trial[1])) /
-                              (rise(2) * *friction + std::hypot(rise(0), rise(1))));
-  }
-  return kRoom * root;
-}
-
-Footing GrownContact::footing_if_stuck(const Site& site, const Vec& new_module,
-                                       std::span<const PointLoad> host_loads, double energy_root,
-                                       const FacetInfluence* facets) const {
-  Footing footing;
-  for (const auto& [root, place] : by_root_) {
-    if (energy_root < root) {
-      break;  // And so for all that follow.
-    }
-    if (facets == nullptr) {
-      return {.is_certain = false};
-    }
-    const FacetState& facet = influence_.facets()[place];
-    Vec motion = facets->motion(place, influence_.displacement()[facet.module]);
-    for (const PointLoad& host : host_loads) {
-      for (std::size_t i = 0; i < 6; ++i) {
-        motion[i] += base::dot(facets->displacement(host.module, place, i), host.load);
-      }
-    }
-    look_if_stuck(facet, robot_.facets()[place].touch.friction,
-                  scaled(influence_.law().ground().stiffness, motion), footing);
-  }
-  look_at_own(site, new_module, footing);
-  return footing;
-}
-
-std::size_t GrownContact::uncertain_count(double energy_root) const {
-  const auto is_uncertain = [&](const auto& facet) { return !(energy_root < facet.first); };
-  return static_cast<std::size_t>(std::ranges::partition_point(by_root_, is_uncertain) -
-                                  by_root_.begin());
 }
 
 /// Whether a facet is so far from tilting and lifting that certain_state() says that it is stuck.

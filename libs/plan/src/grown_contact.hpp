@@ -13,10 +13,15 @@
 #include "holdfast/model/robot.hpp"
 #include "holdfast/solver/influence.hpp"
 #include "new_node.hpp"
-#include "responses.hpp"
 #include "site.hpp"
 
 namespace holdfast::plan {
+
+/// A load on one module.
+struct PointLoad {
+  std::size_t module = 0;
+  base::Vec6<double> load{};
+};
 
 /// What the facets of a grown robot say besides the loads.
 struct Footing {
@@ -50,27 +55,11 @@ class GrownContact {
   /// The loads while all facets are stuck.
   std::optional<Grown> stuck(const Site& site) const;
 
-  /// What all facets say as long as they stick, when the new one's module moves so: under loads on
-  /// its hosts whose energy (LoadChange) has such a root. Certain only if they do. Without `facets`
-  /// only the energy can tell.
-  Footing footing_if_stuck(const Site& site, const Vec& new_module,
-                           std::span<const PointLoad> host_loads, double energy_root,
-                           const FacetInfluence* facets) const;
-
   /// What facets that move with the modules' `displacement(module)` and the new one say; certain
-  /// only if all of them are stuck. Asks for no more than the first `count` facets: the others
-  /// stick.
+  /// only if all of them are stuck.
   template <class Displacement>
-  Footing footing_if_stuck(const Site& site, const Vec& new_module, std::size_t count,
+  Footing footing_if_stuck(const Site& site, const Vec& new_module,
                            const Displacement& displacement) const;
-
-  /// How many facets may not stick under loads whose energy has such a root, and the module of
-  /// each.
-  std::size_t uncertain_count(double energy_root) const;
-
-  std::size_t uncertain_module(std::size_t i) const {
-    return influence_.facets()[by_root_[i].second].module;
-  }
 
   /// The loads in the contact states where the path ends; none if it does not end, or not for
   /// certain as that of a check. A site without links: the robot without a new module.
@@ -97,7 +86,6 @@ class GrownContact {
   void look_at_own(const Site& site, const Vec& new_module, Footing& footing) const;
   void look_if_stuck(const solver::FacetState& facet, std::optional<double> friction,
                      const Vec& trial, Footing& footing) const;
-  double stuck_energy_root(std::size_t facet) const;
   void look_at(const solver::FacetState& facet, std::optional<double> friction, const Vec& trial,
                Footing& footing) const;
   bool is_on_flat_floor(const Site& site) const;
@@ -117,21 +105,18 @@ class GrownContact {
   model::Touch floor_;
   Vec load_{};          ///< Of the new module.
   double scale_n_ = 0;  ///< All loads together.
-  /// The roots of the energy of a change up to which facets surely stick, and the facets.
-  std::vector<std::pair<double, std::size_t>> by_root_;
   /// By directions of the links and the code of the own facet's state, -1 without one.
   std::map<std::pair<std::vector<base::Direction>, int>, NewNode> nodes_;
 };
 
 template <class Displacement>
-Footing GrownContact::footing_if_stuck(const Site& site, const Vec& new_module, std::size_t count,
+Footing GrownContact::footing_if_stuck(const Site& site, const Vec& new_module,
                                        const Displacement& displacement) const {
   Footing footing = {};
-  for (std::size_t i = 0; !is_bonded_ && i < count; ++i) {
-    const std::size_t place = by_root_[i].second;
-    const solver::FacetState& facet = influence_.facets()[place];
-    look_if_stuck(facet, robot_.facets()[place].touch.friction,
-                  influence_.law().trial_force(facet, displacement(facet.module)), footing);
+  const auto facets = influence_.facets();
+  for (std::size_t i = 0; !is_bonded_ && i < facets.size(); ++i) {
+    look_if_stuck(facets[i], robot_.facets()[i].touch.friction,
+                  influence_.law().trial_force(facets[i], displacement(facets[i].module)), footing);
   }
   look_at_own(site, new_module, footing);
   return footing;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 
 namespace holdfast::plan {
@@ -51,28 +50,11 @@ LaneRatios::LaneRatios(const model::Robot& robot, const solver::Influence& influ
     entries_.push_back({.slot_a = influence.slot(base::at(pair.a)),
                         .slot_b = influence.slot(base::at(pair.b)),
                         .connection = i,
-                        .ratio = model::load_ratio(robot.connector(pair), force).ratio,
                         .axial_n = force[2],
                         .about_x_nmm = force[3],
                         .about_y_nmm = force[4]});
   }
-  std::ranges::stable_sort(entries_, std::greater<>(), &Entry::ratio);
-  ratio_per_root_ = model::load_ratio_per_energy_norm(robot);
   error_share_ = find_error_share();
-}
-
-std::size_t LaneRatios::contender_count(double known, double energy_root) const {
-  constexpr double kRoom = 1 + 1e-6;  // For rounding.
-  const double change = kRoom * ratio_per_root_ * energy_root;
-  const auto may_exceed = [&](const Entry& entry) { return !(entry.ratio + change < known); };
-  return static_cast<std::size_t>(std::ranges::partition_point(entries_, may_exceed) -
-                                  entries_.begin());
-}
-
-void LaneRatios::add_slots(std::size_t count, std::vector<std::size_t>& slots) const {
-  for (const Entry& entry : std::span(entries_).first(count)) {
-    slots.insert(slots.end(), {entry.slot_a, entry.slot_b});
-  }
 }
 
 double LaneRatios::find_error_share() const {
@@ -90,10 +72,10 @@ double LaneRatios::find_error_share() const {
   return change / largest;
 }
 
-LaneRatios::PerLane LaneRatios::largest(std::span<const LaneBlock> more, std::size_t first,
-                                        std::size_t last, const PerLane& known) const {
-  PerLane largest = known;
-  for (const Entry& entry : std::span(entries_).subspan(first, last - first)) {
+LaneRatios::PerLane LaneRatios::largest(std::span<const LaneBlock> more) const {
+  PerLane largest;
+  largest.fill(-std::numeric_limits<double>::infinity());
+  for (const Entry& entry : entries_) {
     if (is_opening_only_) {
       add_opening(entry, more, largest);
     } else {

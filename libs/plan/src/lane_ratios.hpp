@@ -25,20 +25,9 @@ class LaneRatios {
   /// of the largest or of 1; not a number if load ratios are none.
   double error_share() const { return error_share_; }
 
-  /// Connections, by descending load ratio under the robot's own loads.
-  std::size_t connection_count() const { return entries_.size(); }
-
-  /// How many of these may have a load ratio of more than `known` under other loads whose energy
-  /// f' K^-1 f has such a root: no load ratio changes by more than a share of that.
-  std::size_t contender_count(double known, double energy_root) const;
-
-  /// The slots of the ends of the first so many.
-  void add_slots(std::size_t count, std::vector<std::size_t>& slots) const;
-
-  /// The largest of the connections [first, last), and of `known`. `more` is what the other loads
-  /// add to the displacements, by slot.
-  PerLane largest(std::span<const solver::LaneBlock> more, std::size_t first, std::size_t last,
-                  const PerLane& known) const;
+  /// The largest of all connections. `more` is what the other loads add to the displacements, by
+  /// slot.
+  PerLane largest(std::span<const solver::LaneBlock> more) const;
 
  private:
   /// A connection as rows that multiply the second end's displacement less the first's.
@@ -46,8 +35,7 @@ class LaneRatios {
     std::size_t slot_a = 0;
     std::size_t slot_b = 0;
     std::size_t connection = 0;
-    double ratio = 0;  ///< Under the robot's own loads, as what follows.
-    double axial_n = 0;
+    double axial_n = 0;  ///< Under the robot's own loads, as what follows.
     double about_x_nmm = 0;
     double about_y_nmm = 0;
   };
@@ -69,8 +57,7 @@ class LaneRatios {
   const solver::Influence& influence_;
   bool is_opening_only_ = true;  ///< No connection has any other limit.
   std::vector<Rows> rows_;       ///< By direction.
-  std::vector<Entry> entries_;   ///< By descending ratio.
-  double ratio_per_root_ = 0;
+  std::vector<Entry> entries_;   ///< By connection.
   double error_share_ = 0;
 };
 

@@ -134,19 +134,6 @@ std::size_t BlockLu::factor_product_count() const {
   return symmetry_ == Symmetry::kSymmetric ? count : 2 * count;
 }
 
-BlockLu BlockLu::without_values() const {
-  BlockLu lu(0, {}, 0, symmetry_);
-  lu.edges_ = edges_;
-  lu.position_ = position_;
-  lu.parent_ = parent_;
-  lu.column_start_ = column_start_;
-  lu.rows_ = rows_;
-  lu.row_start_ = row_start_;
-  lu.row_entries_ = row_entries_;
-  lu.column_edges_ = column_edges_;
-  return lu;
-}
-
 bool BlockLu::factor(int thread_count) {
   std::vector<std::size_t> columns;
   for (std::size_t k = 0; k < position_.size(); ++k) {
@@ -310,122 +297,9 @@ void BlockLu::substitute(std::span<base::Vec6<double>> y, std::size_t count) con
 }
 
 void BlockLu::solve_lanes(std::span<LaneBlock> y) const {
-  begin_lanes(y);
-  factor_kernels().backward_lanes(view(), nullptr, y.data());
-}
-
-LaneNumbers BlockLu::begin_lanes(std::span<LaneBlock> y) const {
   HOLDFAST_CHECK(y.size() == position_.size() && symmetry_ == Symmetry::kSymmetric &&
                  !is_singular_);
-  return factor_kernels().forward_lanes(view(), y.data());
-}
-
-void BlockLu::find_lanes(std::span<LaneBlock> y, std::span<const std::size_t> places,
-                         std::vector<std::uint8_t>& is_found) const {
-  is_found.resize(position_.size(), 0);
-  std::vector<std::uint8_t> is_asked(position_.size(), 0);
-  for (const std::size_t place : places) {
-    for (auto k = static_cast<std::int32_t>(place); k >= 0 && is_found[base::at(k)] == 0;
-         k = parent_[base::at(k)]) {
-      is_asked[base::at(k)] = 1;
-      is_found[base::at(k)] = 1;
-    }
-  }
-  factor_kernels().backward_lanes(view(), is_asked.data(), y.data());
-}
-
-void BlockLu::end_lanes(std::span<LaneBlock> y, std::vector<std::uint8_t>& is_found) const {
-  is_found.resize(position_.size(), 0);
-  for (std::uint8_t& flag : is_found) {
-    flag = flag == 0 ? 1 : 0;
-  }
-  factor_kernels().backward_lanes(view(), is_found.data(), y.data());
-  is_found.assign(is_found.size(), 1);
-}
-
-BlockLu::Way BlockLu::way_up(std::int32_t node) const {
-  Way way;
-  for (std::int32_t k = position_[base::at(node)]; k >= 0; k = parent_[base::at(k)]) {
-    way.places.push_back(k);
-  }
-  way.blocks.resize(way.places.size());
-  for (int i = 0; i < 6; ++i) {
-    way.blocks.front().at(i, i) = 1;
-  }
-  for (std::size_t i = 0; i < way.places.size(); ++i) {
-    const auto k = static_cast<std::size_t>(way.places[i]);
-    const base::Mat6<double> divided = product(inverse_[k], way.blocks[i]);
-    std::size_t target = i;  // Rows of a column ascend on the same way up.
-    for (std::size_t slot = column_start_[k]; slot < column_start_[k + 1]; ++slot) {
-      while (way.places[target] != rows_[slot]) {
-        ++target;
-      }
-      factor_kernels().subtract_product(way.blocks[target], lower_[slot], divided);
-    }
-  }
-  return way;
-}
-
-/// a' D^-1 b. Two ways up the tree have their ends in common, and nothing else.
-base::Mat6<double> BlockLu::product_of(const Way& a, const Way& b) const {
-  base::Mat6<double> negative;
-  std::size_t i = a.places.size();
-  std::size_t j = b.places.size();
-  while (i > 0 && j > 0 && a.places[i - 1] == b.places[j - 1]) {
-    --i;
-    --j;
-    base::Mat6<double> divided;
-    factor_kernels().subtract_product(divided, inverse_[base::at(a.places[i])], b.blocks[j]);
-    factor_kernels().subtract_product(negative, transpose(a.blocks[i]), divided);
-  }
-  return negative;  // Of a negative.
-}
-
-std::vector<base::Mat6<double>> BlockLu::inverse_blocks(std::span<const Edge> nodes,
-                                                        int thread_count) const {
-  HOLDFAST_CHECK(symmetry_ == Symmetry::kSymmetric && !is_singular_);
-  std::vector<base::Mat6<double>> blocks(nodes.size());
-  constexpr std::size_t kChunk = host::Team::kChunk;
-  constexpr std::size_t kGroup = 16;  // Counts as a chunk of a team's work.
-  const std::size_t group_count = (nodes.size() + kGroup - 1) / kGroup;
-  host::Team team(thread_count, group_count * kChunk);
-  team.share(0, group_count * kChunk, [&](std::size_t begin, std::size_t end) {
-    const std::size_t first = begin / kChunk * kGroup;
-    const std::size_t last = std::min((end + kChunk - 1) / kChunk * kGroup, nodes.size());
-    find_inverse_blocks(nodes.subspan(first, last - first),
-                        std::span(blocks).subspan(first, last - first));
-  });
-  return blocks;
-}
-
-std::size_t BlockLu::way_product_count(std::span<const std::size_t> nodes) const {
-  std::vector<std::size_t> counts(position_.size());  // By place, for a way from there.
-  for (std::size_t k = position_.size(); k-- > 0;) {
-    const std::size_t above = parent_[k] >= 0 ? counts[base::at(parent_[k])] : 0;
-    counts[k] = above + column_start_[k + 1] - column_start_[k] + 1;
-  }
-  std::size_t count = 0;
-  for (const std::size_t node : nodes) {
-    count += counts[base::at(position_[node])];
-  }
-  return count;
-}
-
-void BlockLu::find_inverse_blocks(std::span<const Edge> nodes,
-                                  std::span<base::Mat6<double>> blocks) const {
-  constexpr std::size_t kWayCountMax = 256;  // Kept at once: a way takes up to a column per node.
-  std::map<std::int32_t, Way> ways;
-  const auto way_of = [&](std::int32_t node) -> const Way& {
-    const auto found = ways.find(node);
-    return found != ways.end() ? found->second : ways.emplace(node, way_up(node)).first->second;
-  };
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (ways.size() + 2 > kWayCountMax) {
-      ways.clear();
-    }
-    const Way& first = way_of(nodes[i].a);
-    blocks[i] = product_of(first, way_of(nodes[i].b));
-  }
+  factor_kernels().solve_lanes(view(), y.data());
 }
 
 }  // namespace holdfast::solver

@@ -69,12 +69,6 @@ double change_share(const Solution& solution) {
 /// drowns in double precision's rounding, each finds something else.
 bool is_refined(const Solution& solution) { return change_share(solution) <= kRefinedShare; }
 
-void add_scaled(Mat6<double>& sum, double factor, const Mat6<double>& block) {
-  for (std::size_t i = 0; i < block.values.size(); ++i) {
-    sum.values[i] += factor * block.values[i];
-  }
-}
-
 }  // namespace
 
 std::unique_ptr<DirectSystem> DirectSystem::make(const model::Robot& robot,
@@ -123,16 +117,15 @@ void DirectSystem::order(const EquilibriumOptions& options) {
 
 /// Everything but the contact.
 void DirectSystem::assemble() {
-  diagonal_ = set_connections(*lu_, {});
+  diagonal_ = set_connections();
   for (std::size_t node = 0; node < diagonal_.size(); ++node) {
     lu_->set_diagonal(node, diagonal_[node]);
   }
 }
 
 /// K12 of every beam off the diagonal; returns K11 of all their ends, which stand on it (Eqs. 3,
-/// 5). Without factors they are 1.
-std::vector<Mat6<double>> DirectSystem::set_connections(BlockLu& lu,
-                                                        std::span<const double> factors) const {
+/// 5).
+std::vector<Mat6<double>> DirectSystem::set_connections() {
   std::array<Mat6<double>, base::Lattice::kDirectionCountMax> k11;
   std::array<Mat6<double>, base::Lattice::kDirectionCountMax> k12;
   for (const base::Direction direction : base::directions(robot().lattice())) {
@@ -140,40 +133,25 @@ std::vector<Mat6<double>> DirectSystem::set_connections(BlockLu& lu,
     k11[i] = beam().block_11(direction);
     k12[i] = beam().block_12(direction);
   }
-  std::vector<Mat6<double>> diagonal(lu.node_count());
+  std::vector<Mat6<double>> diagonal(lu_->node_count());
   std::size_t edge = 0;
-  std::size_t i = 0;
   for (const model::Connection connection : robot().connections()) {
     const std::int32_t a = node_of(connection.a);
     const std::int32_t b = node_of(connection.b);
     const auto direction = static_cast<std::size_t>(base::index(connection.direction));
     const auto opposite =
         static_cast<std::size_t>(base::index(base::opposite(connection.direction)));
-    const double factor = factors.empty() ? 1 : factors[i++];
     if (a >= 0) {
-      add_scaled(diagonal[at(a)], factor, k11[direction]);
+      base::add_to(diagonal[at(a)], k11[direction]);
     }
     if (b >= 0) {
-      add_scaled(diagonal[at(b)], factor, k11[opposite]);
+      base::add_to(diagonal[at(b)], k11[opposite]);
     }
     if (a >= 0 && b >= 0) {
-      lu.set_edge(edge++, factor == 1 ? k12[direction] : scaled(k12[direction], factor));
+      lu_->set_edge(edge++, k12[direction]);
     }
   }
   return diagonal;
-}
-
-BlockLu DirectSystem::factors_of(std::span<const double> connection_factors) const {
-  BlockLu lu = lu_->without_values();
-  std::vector<Mat6<double>> diagonal = set_connections(lu, connection_factors);
-  for (std::size_t i = 0; i < facets().size(); i = first_facet_after(i)) {
-    Mat6<double>& block = diagonal[at(node_of_module_[facets()[i].module])];
-    block = with_facets(block, i);
-  }
-  for (std::size_t node = 0; node < diagonal.size(); ++node) {
-    lu.set_diagonal(node, diagonal[node]);
-  }
-  return lu;
 }
 
 void DirectSystem::take_law() {
@@ -212,15 +190,11 @@ void DirectSystem::take_facet(std::size_t facet) {
     }
   }
   const std::size_t node = at(node_of_module_[module]);
-  lu_->set_diagonal(node, with_facets(diagonal_[node], facet));
-}
-
-/// A block of the diagonal and what all facets of a module add to it.
-Mat6<double> DirectSystem::with_facets(Mat6<double> block, std::size_t first_facet) const {
-  for (std::size_t i = first_facet; i < first_facet_after(first_facet); ++i) {
+  Mat6<double> block = diagonal_[node];
+  for (std::size_t i = facet; i < first_facet_after(facet); ++i) {
     base::add_to(block, law().tangent(facets()[i]));
   }
-  return block;
+  lu_->set_diagonal(node, block);
 }
 
 /// From one vector per node to one per module; fixed modules get zero.

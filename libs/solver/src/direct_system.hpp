@@ -41,9 +41,6 @@ class DirectSystem final : public LinearSystem {
   /// The factors, one node per module that is not fixed, as of the last solve().
   const BlockLu& factors() const { return *lu_; }
 
-  /// The same of K with every connection's stiffness times a factor of its own; not factorized.
-  BlockLu factors_of(std::span<const double> connection_factors) const;
-
   /// A module's node; -1 if it is fixed.
   std::int32_t node_of(std::int32_t module) const;
 
@@ -62,9 +59,7 @@ class DirectSystem final : public LinearSystem {
   void order(const EquilibriumOptions& options);
   bool is_symmetric(const FacetState& facet) const;
   void assemble();
-  std::vector<base::Mat6<double>> set_connections(BlockLu& lu,
-                                                  std::span<const double> factors) const;
-  base::Mat6<double> with_facets(base::Mat6<double> block, std::size_t first_facet) const;
+  std::vector<base::Mat6<double>> set_connections();
   std::size_t first_facet_after(std::size_t facet) const;
   std::vector<Vec> by_module(const std::vector<Vec>& by_node) const;
   template <class Load>

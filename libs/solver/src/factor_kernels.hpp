@@ -70,11 +70,9 @@ struct FactorKernels {
   void (*multiply_each)(base::Mat6<double>* first, base::Mat6<double>* last,
                         const base::Mat6<double>& a);
 
-  /// Solves in place for kLaneCount right-hand sides f of a symmetric matrix A, y by place in the
-  /// order of elimination: the first half gives f' A^-1 f, the second finds the solution in the
-  /// places that are asked for; those above them in the elimination tree are, or have theirs.
-  LaneNumbers (*forward_lanes)(const FactorView& factors, LaneBlock* y);
-  void (*backward_lanes)(const FactorView& factors, const std::uint8_t* is_asked, LaneBlock* y);
+  /// Solves in place for kLaneCount right-hand sides of a symmetric matrix, y by place in the order
+  /// of elimination.
+  void (*solve_lanes)(const FactorView& factors, LaneBlock* y);
 
   /// Solves in place for `count` right-hand sides, y by place, then by side.
   void (*substitute)(const FactorView& factors, base::Vec6<double>* y, std::size_t count);

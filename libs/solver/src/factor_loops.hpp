@@ -377,21 +377,7 @@ inline void substitute_backward(const FactorView& factors, std::size_t first, st
   }
 }
 
-/// y = A y; adds y' A y to `energies`.
-inline void divide(const Block& a, LaneBlock& y, LaneNumbers& energies) {
-  const LaneBlock before = y;
-  multiply_by(a, y);
-  for (std::size_t lane = 0; lane < kLaneCount; lane += kWide) {
-    Wide sum = load<Wide>(energies.data() + lane);
-    for (std::size_t i = 0; i < 6; ++i) {
-      sum += load<Wide>(before.values[i] + lane) * load<Wide>(y.values[i] + lane);
-    }
-    store(energies.data() + lane, sum);
-  }
-}
-
-LaneNumbers forward_lanes(const FactorView& factors, LaneBlock* y) {
-  LaneNumbers energies{};
+void forward_lanes(const FactorView& factors, LaneBlock* y) {
   const std::size_t* const start = factors.column_start;
   for (std::size_t k = 0; k < factors.place_count;) {
     if (is_zero(y[k])) {
@@ -403,26 +389,20 @@ LaneNumbers forward_lanes(const FactorView& factors, LaneBlock* y) {
       ++k;
     }
     for (std::size_t column = first; column < k; ++column) {
-      divide(factors.inverse[column], y[column], energies);
+      multiply_by(factors.inverse[column], y[column]);
       for (std::size_t own = 0; own + 1 < k - column; ++own) {
         subtract(y[column + 1 + own], factors.lower[start[column] + own], y[column]);
       }
     }
     substitute_forward(factors, first, k, y);
   }
-  return energies;
 }
 
-void backward_lanes(const FactorView& factors, const std::uint8_t* is_asked, LaneBlock* y) {
+void backward_lanes(const FactorView& factors, LaneBlock* y) {
   const std::size_t* const start = factors.column_start;
   for (std::size_t end = factors.place_count; end > 0;) {
     std::size_t first = end - 1;
-    if (is_asked != nullptr && is_asked[first] == 0) {
-      end = first;
-      continue;
-    }
-    while (end - first < kBackwardColumns && first > 0 && has_rows_of_next(factors, first - 1) &&
-           (is_asked == nullptr || is_asked[first - 1] != 0)) {
+    while (end - first < kBackwardColumns && first > 0 && has_rows_of_next(factors, first - 1)) {
       --first;
     }
     LaneBlock rest[kBackwardColumns];
@@ -436,6 +416,11 @@ void backward_lanes(const FactorView& factors, const std::uint8_t* is_asked, Lan
     }
     end = first;
   }
+}
+
+void solve_lanes(const FactorView& factors, LaneBlock* y) {
+  forward_lanes(factors, y);
+  backward_lanes(factors, y);
 }
 
 void substitute_symmetric(const FactorView& factors, Column* y, std::size_t count) {
@@ -533,8 +518,7 @@ void update_symmetric(const SymmetricUpdate& update) {
 constexpr FactorKernels kFactorKernels = {.subtract_product = subtract,
                                           .subtract_products = subtract_products,
                                           .multiply_each = multiply_each,
-                                          .forward_lanes = forward_lanes,
-                                          .backward_lanes = backward_lanes,
+                                          .solve_lanes = solve_lanes,
                                           .substitute = substitute,
                                           .update_column = update_column,
                                           .update_symmetric = update_symmetric};

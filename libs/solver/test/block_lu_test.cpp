@@ -411,48 +411,6 @@ TEST(BlockLu, solves_lanes_to_the_bits_of_one_after_another) {
   }
 }
 
-TEST(BlockLu, solves_lanes_in_parts_and_where_it_is_asked) {
-  base::Rng rng(8);
-  const std::vector<Edge> edges = lattice(3, 3, 4);
-  BlockLu lu = symmetric_lattice(rng, 36, edges);
-  ASSERT_TRUE(lu.factor());
-  std::vector<LaneBlock> loads(36);
-  for (std::size_t lane = 0; lane < kLaneCount; ++lane) {
-    for (std::size_t k = 0; k < 6; ++k) {
-      loads[lu.place((5 * lane + 1) % 36)].values[k][lane] = random_signed(rng);
-    }
-  }
-  std::vector<LaneBlock> whole = loads;
-  lu.solve_lanes(whole);
-  const std::vector<std::size_t> places = {lu.place(4), lu.place(17), lu.place(35)};
-  std::vector<LaneBlock> some = loads;
-  const LaneNumbers energies = lu.begin_lanes(some);
-  std::vector<std::uint8_t> is_found;
-  lu.find_lanes(some, std::span(places).first(1), is_found);
-  lu.find_lanes(some, places, is_found);
-  std::size_t void_count = 0;
-  for (std::size_t lane = 0; lane < kLaneCount; ++lane) {
-    double energy = 0;
-    for (std::size_t place = 0; place < 36; ++place) {
-      for (std::size_t k = 0; k < 6; ++k) {
-        const double x = whole[place].values[k][lane];
-        energy += loads[place].values[k][lane] * x;
-        const bool is_asked = std::ranges::find(places, place) != places.end();
-        EXPECT_TRUE(!is_asked || some[place].values[k][lane] == x);
-        void_count += some[place].values[k][lane] != x ? 1 : 0;
-      }
-    }
-    EXPECT_NEAR(energies[lane], energy, 1e-12 * energy);
-  }
-  EXPECT_GT(void_count, 0U);
-  lu.end_lanes(some, is_found);
-  for (std::size_t place = 0; place < 36; ++place) {
-    for (std::size_t k = 0; k < 6; ++k) {
-      EXPECT_TRUE(std::ranges::equal(some[place].values[k], whole[place].values[k]));
-    }
-  }
-}
-
 /// Against solutions for unit vectors.
 TEST(BlockLu, gives_blocks_of_the_inverse_of_a_symmetric_matrix) {
   base::Rng rng(6);
@@ -470,11 +428,6 @@ TEST(BlockLu, gives_blocks_of_the_inverse_of_a_symmetric_matrix) {
       }
     }
   };
-  const std::vector<Edge> any = {{0, 26}, {13, 13}, {4, 5}, {26, 0}};
-  const std::vector<Mat6<double>> blocks = lu.inverse_blocks(any);
-  for (std::size_t i = 0; i < any.size(); ++i) {
-    expect_block(blocks[i], any[i]);
-  }
   const std::vector<std::size_t> asked = {4, 13, 14, 5, 26};
   const SelectedInverse inverse = lu.selected_inverse(asked);
   for (const Edge& edge : {Edge{4, 4}, {26, 26}, {4, 5}, {5, 4}, {14, 13}, {13, 4}, {5, 14}}) {

@@ -54,7 +54,6 @@ struct CandidateOptions {
 struct CandidateReport {
   std::vector<Candidate> candidates;  ///< In the order of the cells.
   std::size_t check_count = 0;        ///< So many checks were made.
-  std::size_t solution_count = 0;     ///< So many whole solutions for others.
   double preparation_seconds = 0;     ///< Spent on the robot as it is.
   double seconds = 0;                 ///< In all.
 };

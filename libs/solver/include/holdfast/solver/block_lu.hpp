@@ -59,9 +59,6 @@ class BlockLu {
   /// Products of two blocks that factor() takes where every column is to be made.
   std::size_t factor_product_count() const;
 
-  /// The same matrix without its values.
-  BlockLu without_values() const;
-
   /// Columns that all calls of factor() have made so far.
   std::size_t made_column_count() const { return made_column_count_; }
 
@@ -81,36 +78,13 @@ class BlockLu {
   /// after another.
   void solve_lanes(std::span<LaneBlock> y) const;
 
-  /// The same in parts: the first gives b' A^-1 b, the others find what these places, or all that
-  /// are left, have of x. `is_found` tells by place, none at first; what others have is void.
-  LaneNumbers begin_lanes(std::span<LaneBlock> y) const;
-  void find_lanes(std::span<LaneBlock> y, std::span<const std::size_t> places,
-                  std::vector<std::uint8_t>& is_found) const;
-  void end_lanes(std::span<LaneBlock> y, std::vector<std::uint8_t>& is_found) const;
-
   /// Blocks of A^-1 of a symmetric A: for each of the nodes, for two of them that are coupled, and
   /// for the pairs of them. Keeps a reference.
   SelectedInverse selected_inverse(std::span<const std::size_t> nodes,
                                    std::span<const Edge> pairs = {}, int thread_count = 1) const;
 
-  /// The block of A^-1 of a symmetric A for each of any pairs of nodes: the displacements of the
-  /// first for unit loads on the second, by column. Takes less than selected_inverse() for few
-  /// nodes: see way_product_count().
-  std::vector<base::Mat6<double>> inverse_blocks(std::span<const Edge> nodes,
-                                                 int thread_count = 1) const;
-
-  /// Products of two blocks that inverse_blocks() takes for each of these nodes.
-  std::size_t way_product_count(std::span<const std::size_t> nodes) const;
-
  private:
   friend class SelectedInverse;
-
-  /// The forward substitution of the six unit vectors of one node: (I + L)^-1, where it is not
-  /// zero, on the node's way up the elimination tree.
-  struct Way {
-    std::vector<std::int32_t> places;
-    std::vector<base::Mat6<double>> blocks;
-  };
 
   struct Entry {
     std::int32_t column = 0;
@@ -136,9 +110,6 @@ class BlockLu {
                                const WaitFor& wait_for, const Scratch& scratch);
   void substitute(std::span<base::Vec6<double>> y, std::size_t count) const;
   FactorView view() const;
-  void find_inverse_blocks(std::span<const Edge> nodes, std::span<base::Mat6<double>> blocks) const;
-  Way way_up(std::int32_t node) const;
-  base::Mat6<double> product_of(const Way& a, const Way& b) const;
   std::size_t find_slot(std::int32_t column, std::int32_t row) const;
 
   std::vector<Edge> edges_;
