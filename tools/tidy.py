@@ -104,20 +104,19 @@ def check_includes(name, lines, links):
             fault(name, number, f'{match[1]} is freestanding and may not include <{system[1]}>')
 
 
-def check_functions(name, lines):
-    """A function body ends with a brace in the column where its first line began."""
-    start, indent = None, ''
-    for number, line in enumerate(lines, 1):
-        opened = re.match(r'( {0,2})(?!namespace|class|struct|enum|extern)\S.*\{$', line)
-        is_data = line.endswith('= {')
-        if (start is None and opened and not is_data
-                and not line.strip().startswith(('}', '#', '//'))):
-            start, indent = number, opened[1]
-        elif start is not None and line.startswith(indent + '}'):
-            if number - start + 1 > FUNCTION_LINES_MAX:
-                fault(name, start, f'{number - start + 1} lines in one function, allowed are '
-                                   f'{FUNCTION_LINES_MAX}')
-            start = None
+def check_functions(root, names):
+    """Lines from the name of a function to the brace that ends it, as ctags finds them."""
+    command = ['ctags', '-L', '-', '--languages=C++', '--kinds-C++=f', '--fields=+ne', '-x',
+               '--_xformat=%F %n %{end} %N']
+    found = subprocess.run(command, cwd=root, input='\n'.join(names), capture_output=True,
+                           text=True, check=True).stdout.splitlines()
+    if len(found) < len(names):
+        fault('tools/tidy.py', 1, f'ctags found {len(found)} functions in {len(names)} files')
+    for entry in found:
+        name, start, end, function = entry.split(' ', 3)
+        count = int(end) - int(start) + 1
+        if count > FUNCTION_LINES_MAX:
+            fault(name, start, f'{count} lines in {function}, allowed are {FUNCTION_LINES_MAX}')
 
 
 def check_text(name, lines):
@@ -139,7 +138,6 @@ def check_source(name, lines, links, exported):
         fault(name, len(lines), f'{len(lines)} lines, allowed are {FILE_LINES_MAX}')
     check_includes(name, lines, links)
     check_named_rooms(name, lines, links, exported)
-    check_functions(name, lines)
 
 
 def check_room_readmes(root):
@@ -182,7 +180,9 @@ def main():
     links = room_links(root)
     cited = set(re.findall(r'^@\w+{(\w+),', (root / 'docs/references.bib').read_text(), re.M))
     exported = facade_exports(root)
-    for name in tracked_files(root):
+    names = tracked_files(root)
+    check_functions(root, [name for name in names if pathlib.Path(name).suffix in SOURCE_SUFFIXES])
+    for name in names:
         path = root / name
         if path.suffix in SOURCE_SUFFIXES:
             lines = path.read_text().splitlines()
