@@ -21,8 +21,8 @@ import sys
 import tempfile
 
 DOCUMENTS = ['README.md', *(f'docs/{name}.md' for name in (
-    'theory', 'solver', 'solver_evidence', 'distributed', 'one_sweep', 'proof', 'page', 'formats',
-    'plan', 'move'))]
+    'tour', 'theory', 'solver', 'solver_evidence', 'distributed', 'one_sweep', 'proof', 'page',
+    'formats', 'plan', 'move'))]
 # These need the firmware's compilers; tests/firmware checks what they show.
 NOT_RUN = './dev firmware'
 
@@ -130,7 +130,7 @@ def check_row(repository, document, row, cost):
 
 def check_tables(repository, costs):
     for name, (rounds, packets, seconds) in costs.items():
-        check_row(repository, 'README.md', rf'^\| {name} \|.*\| ([^|]* / [^|]*) \| yes \|$',
+        check_row(repository, 'docs/tour.md', rf'^\| {name} \|.*\| ([^|]* / [^|]*) \| yes \|$',
                   f'{rounds} / {seconds}')
         check_row(repository, 'docs/distributed.md', rf'^\| {name} \|.*\| ([^|]*) \|$',
                   f'{rounds}, {packets}, {seconds}')

@@ -4,9 +4,9 @@
 """shown_test.py HOLDFAST REPOSITORY IMAGES [--renew]
 The documents show what emulated modules do, and how large the images are. IMAGES is build/firmware.
 
-- the rows of the scenarios in README.md and docs/firmware.md: seconds are simulated, from the plan
+- the rows of the scenarios in docs/firmware.md: seconds are simulated, from the plan
   (or the start) to the last module's verdict, on both boards' lines; printed as they are measured
-- the command in README.md that needs the firmware prints what is shown
+- the command in docs/tour.md that needs the firmware prints what is shown
 - sizes of images, wherever a sentence or a table gives them
 
 What the published method takes stays as it is: preset iterations x 110.5 ms [Piranda 2021].
@@ -32,7 +32,7 @@ class Documents:
     def __init__(self, repository):
         self.repository = repository
         self.texts = {name: (repository / name).read_text()
-                      for name in ('README.md', 'docs/firmware.md')}
+                      for name in ('docs/tour.md', 'docs/firmware.md')}
         self.faults = []
 
     def expect(self, name, pattern, value):
@@ -67,7 +67,7 @@ def emulate(holdfast, scenario, board):
 
 
 def check_scenario(documents, scenario, v2, v1):
-    """Both tables' rows, by the reports of both boards."""
+    """The row of a scenario, by the reports of both boards."""
     image, robot = v2['firmware'], v2['distributed']
     seconds_v1 = v1['firmware']['verdict_after_s']
     ratio = robot['load_ratio_max']
@@ -79,15 +79,11 @@ def check_scenario(documents, scenario, v2, v1):
     full = begin + [f'{seconds_v1:.2f}', longest, f'{image["step_cycles_mean"]:,}'] + end
     print(f'| {scenario.stem} | ' + ' | '.join(full) + ' |', flush=True)
     row = rf'^\| {scenario.stem} \| (\d[^\n]*) \| [\d,]+ \|$'
-    documents.expect('README.md', row, ' | '.join(begin + [longest] + end))
     documents.expect('docs/firmware.md', row, ' | '.join(full))
 
 
 def check_sizes(documents, images, v2, v1):
     flash, ram, agent = (f'{v2[key]:,}' for key in ('flash_bytes', 'ram_bytes', 'agent_bytes'))
-    documents.expect('README.md', r'^(The image takes .* of them the agent)\.',
-                     f'The image takes {flash} bytes of flash and {ram} of RAM, '
-                     f'{agent} of them the agent')
     documents.expect('docs/firmware.md', r'the image \(the 62 KB .*\| ([\d,]+) \|$', flash)
     documents.expect('docs/firmware.md', r'^\| flash at most 60 KB .*\| ([\d,]+) \| met', flash)
     documents.expect('docs/firmware.md', r'^\| RAM at most 8 KB .*\| (.*) bytes: agent', ram)
@@ -115,7 +111,7 @@ def main():
     shown = 'emulate scenarios/arm_breaks_b.json'
     printed = subprocess.run([holdfast, *shown.split()], cwd=repository, capture_output=True,
                              text=True, check=False).stdout.rstrip('\n').split('\n')
-    documents.expect_output('README.md', shown, printed)
+    documents.expect_output('docs/tour.md', shown, printed)
     if '--renew' in sys.argv:
         documents.write()
     print('\n'.join(documents.faults) or f'{len(scenarios)} scenarios are as shown')
