@@ -174,7 +174,8 @@ def check_words(program, repository, folder):
     expect(done.returncode == 65 and 'they differ in material' in done.stderr, done.stderr)
     expect(run(program, 'steps', file, other).returncode == 64, 'TARGET without --verify')
 
-    one.write_text(json.dumps({'format': 'holdfast-structure', 'version': 1, 'modules': [[0, 0, 0]]}))
+    one.write_text(json.dumps({'format': 'holdfast-structure', 'version': 1,
+                               'modules': [[0, 0, 0]]}))
     steps = folder / 'no_steps.json'
     done = run(program, 'order', one, '-o', steps)
     expect('FOUND       0 steps' in done.stdout, f'no steps: {done.stdout}')
