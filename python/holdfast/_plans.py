@@ -3,7 +3,6 @@
 """What may come next: places for a module, steps, orders, moves."""
 from __future__ import annotations
 
-import enum
 from collections.abc import Mapping, Sequence
 from typing import Any, Optional, Union
 
@@ -13,10 +12,10 @@ import numpy.typing as npt
 from . import _core
 from ._progress import Progress, told
 from ._robot import Cell, Cells, Path, Robot, Table, counted
-from ._verdict import VERDICTS, Judged, Verdict
+from ._verdict import VERDICTS, Judged, Name, Verdict
 
 
-class Stage(str, enum.Enum):
+class Stage(Name):
     """The three stages of a step (Sec. II-B)."""
 
     RELEASE = 'release'
@@ -24,7 +23,7 @@ class Stage(str, enum.Enum):
     CONNECT = 'connect'
 
 
-class Outcome(str, enum.Enum):
+class Outcome(Name):
     """What came of a search."""
 
     FOUND = 'found'
@@ -334,14 +333,15 @@ def order(target: Union[Robot, Path], *, start: Optional[Cells] = None, reach: s
         How a module gets to its cell: ``free``, any cell; ``line``, a straight way in; ``surface``,
         sliding along the robot from `source`.
     group
-        Attach up to so many modules at once, 1 to 16.
+        Attach up to so many modules at the same instant, 1 to 16: states in between are not judged.
     reverse
         Take the robot apart, from the target to the start.
     exact
         Solve every state on the way in the end, as is done anyway up to 256 modules: then
         `Order.load_ratio_max` is the largest of all. Else most are certified by a bound.
     seconds, help_seconds
-        Give up after this time; where there is no order, seek the least help for so long.
+        Give up after this time; where there is no order, seek the least help for so long. None is
+        sought by itself, as the command does for 10 s: whoever asks for many orders need not wait.
     progress
         Called with (states, modules now, modules at the furthest state).
 

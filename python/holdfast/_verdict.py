@@ -6,7 +6,17 @@ from __future__ import annotations
 import enum
 
 
-class Verdict(str, enum.Enum):
+class Name(str, enum.Enum):
+    """A name out of a few: a string, and printed as one whatever the version of Python."""
+
+    def __str__(self) -> str:
+        return self.value
+
+    def __format__(self, format_spec: str) -> str:
+        return format(self.value, format_spec)
+
+
+class Verdict(Name):
     """Will the robot hold? Each verdict is also its name, a string.
 
     >>> Verdict.SAFE == 'safe'
@@ -21,13 +31,6 @@ class Verdict(str, enum.Enum):
     """Topples, or has nothing to spare against toppling."""
     UNDECIDED = 'undecided'
     """Not certain; the reasons say why."""
-
-    # What is printed does not depend on the version of Python.
-    def __str__(self) -> str:
-        return self.value
-
-    def __format__(self, format_spec: str) -> str:
-        return format(self.value, format_spec)
 
     @staticmethod
     def from_code(code: int) -> Verdict:

@@ -189,6 +189,8 @@ def test_a_verdict_is_its_name_and_a_judgement_is_no_truth_value(root, arm):
     order = holdfast.order(root / 'scenarios/plan/counterweight.json')
     assert arm.check().verdict == 'overload' and json.dumps(arm.check().verdict) == '"overload"'
     assert f'{Verdict.SAFE}' == str(Verdict.SAFE) == 'safe'
+    assert f'{holdfast.Stage.SHIFT}' == str(holdfast.Stage.SHIFT) == 'shift'
+    assert f'{holdfast.Outcome.NOT_FOUND}' == str(holdfast.Outcome.NOT_FOUND) == 'not-found'
     assert [Verdict.from_code(code) for code in range(4)] == list(Verdict)
     with pytest.raises(ValueError, match='expected 0 to 3, found 4'):
         Verdict.from_code(4)

@@ -153,6 +153,41 @@ def check_special(program, folder):
            f'special modules: load ratios {ratios}, {last}')
 
 
+def check_words(program, repository, folder):
+    """What is proved of which robot, what arrives together, and orders of no steps."""
+    none = next(name for name, options, result in table(repository)
+                if result == 'none' and not options)
+    file = repository / f'scenarios/plan/{none}.json'
+    structure = json.loads(file.read_text())
+    proof, other, one = (folder / name for name in ('proof.json', 'other.json', 'one.json'))
+    run(program, 'order', file, '--help-seconds', 0, '--certificate', proof)
+    for target, code, words in [
+            ([], 0, f'{structure.get("name", none)}, {len(structure["modules"])} modules'),
+            ([file], 0, '1 module at a time'),
+            ([other], 65, 'another robot')]:
+        other.write_text(json.dumps({**structure, 'modules': structure['modules'][:-1]}))
+        done = run(program, 'steps', '--verify', proof, *target)
+        expect(done.returncode == code and words in done.stdout + done.stderr,
+               f'{target}: {done.returncode}, {done.stdout}{done.stderr}')
+    other.write_text(json.dumps({**structure, 'material': {'elastic_modulus_mpa': 17}}))
+    done = run(program, 'steps', '--verify', proof, other)
+    expect(done.returncode == 65 and 'they differ in material' in done.stderr, done.stderr)
+    expect(run(program, 'steps', file, other).returncode == 64, 'TARGET without --verify')
+
+    one.write_text(json.dumps({'format': 'holdfast-structure', 'version': 1,
+                               'modules': [[0, 0, 0]]}))
+    steps = folder / 'no_steps.json'
+    done = run(program, 'order', one, '-o', steps)
+    expect('FOUND       0 steps' in done.stdout, f'no steps: {done.stdout}')
+    expect(run(program, 'steps', steps).returncode == 0, 'an order of no steps cannot be read')
+
+    done = run(program, 'order', repository / 'scenarios/plan/pair.json', '--group', 2)
+    expect('have to arrive at the same instant' in done.stdout and '-o STEPS.json' in done.stdout,
+           f'--group 2: {done.stdout}')
+    arms = re.search(r'attach .*?(\([^)]*\) \([^)]*\))', done.stdout)
+    expect(arms is not None, f'the order is not told: {done.stdout}')
+
+
 def check_bad_input(program, repository, folder):
     balance = repository / 'scenarios/plan/balance.json'
     cube = repository / 'scenarios/plan/core.json'
@@ -184,6 +219,11 @@ def check_bad_input(program, repository, folder):
         {**frame, 'version': 2, 'modules': [{'cell': [0, 0, 0], 'mass_kg': 5, 'fixed': True}]}))
     done = run(program, 'order', cube, '--from', folder / 'heavy.json')
     expect('differs in what is fixed, masses\n' in done.stderr, f'start: {done.stderr}')
+    # The start is to blame, by its file.
+    for start in ('arm', 'foot'):
+        done = run(program, 'order', balance if start == 'foot' else cube, '--from',
+                   folder / f'{start}.json')
+        expect(done.returncode != 65 or f'{start}.json: ' in done.stderr, f'blamed: {done.stderr}')
     for code, words, arguments in cases:
         done = run(program, 'order', *arguments)
         expect(done.returncode == code and words in done.stderr,
@@ -204,6 +244,7 @@ def main():
             expect(done.returncode == (0 if result == 'found' else 1), f'{scenario}: exit code')
             (check_found if result == 'found' else check_none)(program, file, options, folder)
         check_special(program, folder)
+        check_words(program, repository, folder)
         check_bad_input(program, repository, folder)
     print('\n'.join(faults) if faults else f'order: {len(rows)} rows, no fault')
     return 1 if faults else 0

@@ -227,7 +227,7 @@ Command add_move(CLI::App& app) {
       "piece; every stage is checked as holdfast steps does it, and what is undecided is not "
       "safe.\n"
       "The first interrupt ends the search and leaves what it has.\n"
-      "Exit: 0 found, or proved again, 1 there is none, 2 not found in the time given, 64 wrong "
+      "Exit: 0 found, or proved again, 1 there is none, 2 not found, 64 wrong "
       "usage,\n"
       "65 bad input, not writable or not proved, 70 out of memory.");
   return {command, [options] { return run(*options); }};

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <charconv>
+#include <filesystem>
 #include <memory>
 #include <string_view>
 
@@ -53,18 +54,6 @@ std::optional<base::Cell> cell_of(const std::string& text) {
   return base::Cell{triple[0], triple[1], triple[2]};
 }
 
-/// What a start says that the target says otherwise.
-std::vector<std::string_view> differences(const model::RobotSpec& start,
-                                          const model::RobotSpec& target) {
-  std::vector<std::string_view> names = plan::differences_of_surroundings(start, target);
-  if (model::Robot::create(start, 1) && model::Robot::create(target, 1)) {
-    const auto more =
-        plan::differences_of_modules(plan::RobotState(start), plan::RobotState(target));
-    names.insert(names.end(), more.begin(), more.end());
-  }
-  return names;
-}
-
 /// All cells of a document that is to be the start.
 base::Result<std::vector<base::Cell>> start_cells(const OrderArguments& options,
                                                   const model::RobotSpec& target) {
@@ -89,7 +78,7 @@ base::Result<std::vector<base::Cell>> start_cells(const OrderArguments& options,
   if (start.value().lattice != target.lattice) {
     return base::Error{base::ErrorCode::kBadInput, "its lattice is not that of the target", {}};
   }
-  if (const auto other = differences(start.value(), target); !other.empty()) {
+  if (const auto other = plan::differences(start.value(), target); !other.empty()) {
     print_notes({{fmt::format("only its cells are taken, all else is the target's, which differs "
                               "in {}",
                               fmt::join(other, ", "))}},
@@ -138,6 +127,14 @@ int outcome_code(plan::OrderOutcome outcome) {
   return kExitUndecided;
 }
 
+/// The target with a name: that of its file where it has none.
+io::Document named(io::Document target, const std::string& file) {
+  if (target.name.empty() && file != "-") {
+    target.name = std::filesystem::path(file).stem().string();
+  }
+  return target;
+}
+
 /// Writes what is asked for; the exit code is that of a file that cannot be written, or the
 /// answer's.
 int show(const OrderArguments& options, const io::OrderReport& report) {
@@ -158,16 +155,17 @@ int show(const OrderArguments& options, const io::OrderReport& report) {
   if (!report.result.certificate) {
     print_not_written(options.certificate, "it is not proved that there is no order");
   } else if (!options.certificate.empty() &&
-             !write_or_complain(
-                 options.certificate,
-                 io::write_order_certificate(report.target, *report.result.certificate))) {
+             !write_or_complain(options.certificate,
+                                io::write_order_certificate(named(report.target, options.target),
+                                                            *report.result.certificate))) {
     return kExitBadInput;
   }
   if (!options.json.empty() && !write_or_complain(options.json, io::order_json(report))) {
     return kExitBadInput;
   }
   if (!options.is_quiet && leaves_standard_output()) {
-    fmt::print("{}", io::order_text(report));
+    const bool is_way_shown = has_way && options.steps.empty() && options.json.empty();
+    fmt::print("{}{}", io::order_text(report), is_way_shown ? io::order_way_text(report) : "");
   }
   return outcome_code(outcome);
 }
@@ -210,7 +208,13 @@ int run(const OrderArguments& options) {
     const Interruption interruption;
     return seek_order(read.value().document, request);
   }();
-  return report ? show(options, report.value()) : fail(report.error(), options.target);
+  if (!report) {
+    base::Error error = report.error();
+    const bool is_start = error.where == plan::kAtStart;
+    error.where = is_start ? "" : error.where;
+    return fail(error, is_start && !options.start.empty() ? options.start : options.target);
+  }
+  return show(options, report.value());
 }
 
 void add_ways(CLI::App& command, OrderArguments& options) {
@@ -227,7 +231,10 @@ void add_ways(CLI::App& command, OrderArguments& options) {
       ->check([](const std::string& text) {
         return cell_of(text) ? "" : "expected is a cell, such as 3,0,0";
       });
-  command.add_option("--group", options.group_size, "Attach up to so many modules at once")
+  command
+      .add_option("--group", options.group_size,
+                  "Attach up to so many modules at the same instant: states in between are not "
+                  "judged")
       ->type_name("K")
       ->check(CLI::Range(1, 16))
       ->capture_default_str();
@@ -295,9 +302,8 @@ Command add_order(CLI::App& app) {
   command->footer(
       "Every state on the way is checked as holdfast check does it; one that is undecided is not\n"
       "safe. The first interrupt ends the search and leaves what it has.\n"
-      "Exit: 0 found, 1 there is none, 2 not found in the time given, 64 wrong usage, 65 bad "
-      "input\n"
-      "or not writable, 70 out of memory.");
+      "Exit: 0 found, 1 there is none, 2 not found before time, an interrupt or undecided states\n"
+      "ended the search, 64 wrong usage, 65 bad input or not writable, 70 out of memory.");
   return {command, [options] { return run(*options); }};
 }
 

@@ -17,6 +17,7 @@ namespace {
 struct StepsArguments {
   io::ReadOptions reading;
   std::string file;
+  std::string target;
   std::string json;
   std::string svg;
   std::string html;
@@ -67,24 +68,68 @@ bool write_files(const StepsArguments& options, const StepsFile& file, const Ste
   return is_written && (options.vtk.empty() || write_series(options, file, result));
 }
 
+/// The robot that a certificate is to be of.
+base::Result<model::RobotSpec> read_target(const StepsArguments& options) {
+  const auto text = read_file(options.target);
+  if (!text) {
+    return text.error();
+  }
+  const auto read = io::read_document(text.value(), options.reading);
+  if (!read) {
+    return read.error();
+  }
+  print_notes(read.value().warnings, options.target);
+  return io::order_target(read.value().document);
+}
+
+/// Of which robot there is no order, and with which steps.
+std::string proved_words(const ProvedOrder& proved) {
+  const plan::OrderTask& task = proved.task;
+  std::string steps = fmt::format("{} at a time", host::counted(task.group_size, "module"));
+  if (task.group_size > 1) {
+    steps = "up to " + steps;
+  }
+  if (task.rule.reach == plan::Reach::kLine) {
+    steps += ", each straight in";
+  } else if (task.rule.reach == plan::Reach::kSurface && task.rule.source) {
+    steps += ", each along the surface from " + model::text(*task.rule.source);
+  }
+  const std::string start =
+      task.start.empty() ? (task.target.fixed.empty() ? "any single module" : "the fixed modules")
+                         : fmt::format("{} of it", host::counted(task.start.size(), "module"));
+  return fmt::format("  robot       {}, {}\n  from        {}\n  steps       {}\n",
+                     proved.name.empty() ? "without a name" : io::one_line(proved.name),
+                     host::counted(task.target.existing.size(), "module"), start, steps);
+}
+
 /// Replays the certificate of an order that does not exist.
 int run_certificate(const StepsArguments& options) {
+  std::optional<model::RobotSpec> target;
+  if (!options.target.empty()) {
+    auto found = read_target(options);
+    if (!found) {
+      return fail(found.error(), options.target);
+    }
+    target = std::move(found).value();
+  }
   const auto text = read_file(options.file);
   if (!text) {
     return fail(text.error(), options.file);
   }
-  const auto check = verify_order_certificate(text.value(), options.thread_count);
+  const auto check = verify_order_certificate(text.value(), target, options.thread_count);
   if (!check) {
     return fail(check.error(), options.file);
   }
   if (!options.is_quiet) {
-    const std::size_t blocked_count = check.value().blocked_count;
+    const plan::CertificateCheck& replayed = check.value().check;
+    const std::size_t blocked_count = replayed.blocked_count;
     fmt::print(
         "PROVED      there is no safe order that keeps the robot in one piece: {} replayed, and "
-        "{}\n",
-        host::counted(check.value().state_count, "state"),
+        "{}\n{}",
+        host::counted(replayed.state_count, "state"),
         blocked_count == 0 ? "no step leads any further"
-                           : fmt::format("{} just beyond, none of which is safe", blocked_count));
+                           : fmt::format("{} just beyond, none of which is safe", blocked_count),
+        proved_words(check.value()));
   }
   return kExitSafe;
 }
@@ -131,6 +176,10 @@ int run(const StepsArguments& options) {
   if (options.is_certificate) {
     return run_certificate(options);
   }
+  if (!options.target.empty()) {
+    fmt::print(stderr, "holdfast: TARGET is what --verify compares a certificate with\n");
+    return kExitUsage;
+  }
   const std::vector<std::string> inputs = {options.file};
   if (complain_of_outputs(inputs, {{"--json", options.json},
                                    {"--svg", options.svg},
@@ -167,6 +216,10 @@ Command add_steps(CLI::App& app) {
   add_required(
       *command, "FILE", options->file,
       "A structure with steps: VisibleSim XML, holdfast JSON or binary; - is standard input");
+  command
+      ->add_option("TARGET", options->target,
+                   "With --verify: the robot that the certificate has to be of")
+      ->type_name("");
   add_reading(*command, options->reading);
   const auto add_output = [&](const char* name, std::string& path, const char* help) {
     command->add_option(name, path, help)->type_name("FILE");

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/order.hpp"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <utility>
 
@@ -33,6 +35,7 @@ base::Result<io::OrderReport> seek_order(const io::Document& target, const Order
   }
   const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
   report.result = std::move(result).value();
+  report.is_interrupted = request.is_interrupted && request.is_interrupted();
   report.seconds = passed.count();
   report.is_help_sought = request.help_seconds_max > 0 && report.result.certificate.has_value();
   if (report.is_help_sought) {
@@ -43,13 +46,28 @@ base::Result<io::OrderReport> seek_order(const io::Document& target, const Order
   return report;
 }
 
-base::Result<plan::CertificateCheck> verify_order_certificate(std::string_view text,
-                                                              int thread_count) {
-  const auto certificate = io::read_order_certificate(text);
-  if (!certificate) {
-    return certificate.error();
+base::Result<ProvedOrder> verify_order_certificate(std::string_view text,
+                                                   const std::optional<model::RobotSpec>& target,
+                                                   int thread_count) {
+  auto read = io::read_order_certificate(text);
+  if (!read) {
+    return read.error();
   }
-  return plan::verify(certificate.value(), thread_count);
+  auto [name, certificate] = std::move(read).value();
+  if (target) {
+    const auto names = plan::differences_of_targets(certificate.task.target, *target);
+    if (!names.empty()) {
+      return base::bad_input(fmt::format("the certificate is of another robot{}: they differ in {}",
+                                         name.empty() ? "" : " (" + io::one_line(name) + ")",
+                                         fmt::join(names, ", ")));
+    }
+  }
+  const auto check = plan::verify(certificate, thread_count);
+  if (!check) {
+    return check.error();
+  }
+  return ProvedOrder{
+      .name = std::move(name), .task = std::move(certificate.task), .check = check.value()};
 }
 
 }  // namespace holdfast

@@ -43,7 +43,7 @@ class CertificateReader {
  public:
   explicit CertificateReader(const Json& root) : root_(root) {}
 
-  base::Result<plan::OrderCertificate> read();
+  base::Result<NamedOrderCertificate> read();
 
  private:
   void fail(const std::string& key, const std::string& expected) {
@@ -64,6 +64,7 @@ class CertificateReader {
   void read_states();
 
   const Json& root_;
+  std::string name_;
   plan::OrderCertificate certificate_;
   std::optional<base::Error> error_;
 };
@@ -96,6 +97,7 @@ void CertificateReader::read_task() {
     error_->where = "/target" + error_->where;
     return;
   }
+  name_ = document.value().document.name;
   auto target = order_target(document.value().document);
   if (!target) {
     error_ = target.error();
@@ -148,7 +150,7 @@ void CertificateReader::read_states() {
   }
 }
 
-base::Result<plan::OrderCertificate> CertificateReader::read() {
+base::Result<NamedOrderCertificate> CertificateReader::read() {
   choice("format", {kFormat});
   if (at("version") != 1) {
     fail("version", "1");
@@ -162,7 +164,7 @@ base::Result<plan::OrderCertificate> CertificateReader::read() {
   if (error_) {
     return *error_;
   }
-  return std::move(certificate_);
+  return NamedOrderCertificate{std::move(name_), std::move(certificate_)};
 }
 
 /// Makes the modules of the planned step existing ones, with what they have of their own.
@@ -292,7 +294,7 @@ std::string write_order_certificate(const Document& target,
          "\n";
 }
 
-base::Result<plan::OrderCertificate> read_order_certificate(std::string_view text) {
+base::Result<NamedOrderCertificate> read_order_certificate(std::string_view text) {
   auto root = parse_json(text);
   if (!root) {
     return root.error();
@@ -319,6 +321,10 @@ base::Result<Document> order_steps(const Document& target, const plan::Order& or
       const base::Cell& cell = spec.value().existing[static_cast<std::size_t>(element)];
       (is_reversed ? step.detach : step.attach).push_back(cell);
     }
+  }
+  if (plan.empty()) {
+    plan.emplace_back();
+    return document;
   }
   if (is_reversed) {
     std::ranges::reverse(plan);

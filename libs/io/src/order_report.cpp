@@ -169,7 +169,8 @@ std::string order_text(const OrderReport& report) {
   if (order.outcome == OrderOutcome::kNotFound) {
     const std::string why =
         order.undecided_count == 0
-            ? "no order found before the search ended; there may be one\n"
+            ? fmt::format("no order found before {}; there may be one\n",
+                          report.is_interrupted ? "the search was interrupted" : "the search ended")
             : fmt::format("every order leads through states that are undecided, {} at one end\n",
                           order.undecided_count);
     return "NOT FOUND   " + why + furthest_words(report) + examined;
@@ -181,12 +182,40 @@ std::string order_text(const OrderReport& report) {
   std::string text = fmt::format("FOUND       {}, every state {} is safe\n",
                                  host::counted(order.steps.size(), "step"),
                                  report.is_reversed ? "left behind" : "on the way");
+  if (std::ranges::any_of(order.steps, [](const auto& group) { return group.size() > 1; })) {
+    text +=
+        "  at once     modules of one step have to arrive at the same instant: states in between "
+        "are not judged\n";
+  }
   text += load_ratio_words(report.result);
   if (report.result.margin_min_mm) {
     text += fmt::format("  margin      {} mm at least on the way\n",
                         host::significant(*report.result.margin_min_mm, 4));
   }
   return text + examined;
+}
+
+std::string order_way_text(const OrderReport& report) {
+  constexpr std::size_t kShownMax = 20;
+  const plan::Order& order = report.result.order;
+  const std::size_t count = order.steps.size();
+  const std::size_t shown = std::min(count, kShownMax);
+  std::vector<std::string> groups;
+  for (std::size_t i = 0; i < shown; ++i) {
+    const std::size_t step = report.is_reversed ? count - 1 - i : i;
+    groups.push_back(words(cells_of(report, order.steps[step])));
+  }
+  if (shown < count) {
+    groups.push_back(fmt::format("and {} more", count - shown));
+  }
+  return fmt::format(
+      "{}{}  written     nowhere: -o STEPS.json writes the order\n",
+      report.is_reversed || order.start.size() > 1
+          ? ""
+          : "  start       " + words(cells_of(report, order.start.elements())) + '\n',
+      groups.empty() ? ""
+                     : fmt::format("  {:<10}  {}\n", report.is_reversed ? "detach" : "attach",
+                                   fmt::join(groups, ", then ")));
 }
 
 }  // namespace holdfast::io

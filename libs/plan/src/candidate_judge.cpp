@@ -150,9 +150,8 @@ void CandidateJudge::find_sway() {
     const double mass = robot_.mass(module);
     for (std::size_t axis = 0; axis < 2; ++axis) {
       pulls[influence_->slot(module)].values[axis][axis] += mass;
-      moment_alone_[axis] += mass * displacement[module][axis];
     }
-    mass_alone_ += mass;
+    moved_alone_.add(mass, displacement[module][0], displacement[module][1]);
   }
   influence_->solve(pulls);
   sway_.resize(displacement.size());
@@ -171,17 +170,13 @@ bool CandidateJudge::stays_over_polygon(const Waiting& waiting, const Vec6<doubl
   if (sway_.empty()) {
     return true;
   }
-  const double own_mass = robot_.material().mass_kg;
-  const std::vector<PointLoad> loads = loads_of(waiting.grown);
-  std::array<double, 2> moment = moment_alone_;
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    moment[axis] += own_mass * own[axis];
-    for (const PointLoad& point : loads) {
-      moment[axis] += base::dot(sway_[point.module][axis], point.load);
-    }
+  verdict::MovedMass moved = moved_alone_;
+  moved.add(robot_.material().mass_kg, own[0], own[1]);
+  for (const PointLoad& point : loads_of(waiting.grown)) {
+    moved.x_kg_mm += base::dot(sway_[point.module][0], point.load);
+    moved.y_kg_mm += base::dot(sway_[point.module][1], point.load);
   }
-  const double shift = std::hypot(moment[0], moment[1]) / (mass_alone_ + own_mass);
-  return waiting.margin_mm && shift * (1 + kSwayRounding) < *waiting.margin_mm;
+  return waiting.margin_mm && moved.shift_mm() * (1 + kSwayRounding) < *waiting.margin_mm;
 }
 
 /// K^-1 between the hosts of modules that are more than a load.

@@ -13,6 +13,7 @@
 #include "grown_contact.hpp"
 #include "holdfast/plan/candidates.hpp"
 #include "holdfast/solver/influence.hpp"
+#include "holdfast/verdict/moved_mass.hpp"
 #include "holdfast/verdict/rigid_body.hpp"
 #include "lane_ratios.hpp"
 #include "robot_symmetry.hpp"
@@ -80,8 +81,7 @@ class CandidateJudge {
   mutable std::unique_ptr<FacetInfluence> facets_;
 
   // Without the new module, where the polygon decides; else empty.
-  std::array<double, 2> moment_alone_{};  ///< Of the masses, by displacements along x and y, kg mm.
-  double mass_alone_ = 0;
+  verdict::MovedMass moved_alone_;
   std::vector<std::array<base::Vec6<double>, 2>> sway_;  ///< By module; kg mm per unit load.
 };
 

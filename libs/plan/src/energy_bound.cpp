@@ -63,7 +63,8 @@ EnergyBound::EnergyBound(const model::Robot& target, const LocalAdjoints& adjoin
       room_(target.facets().size()),
       nearby_(target.facets().size()),
       watched_(target),
-      cuts_(target) {
+      cuts_(target),
+      sway_(target, changes_.stiffness()) {
   const Vec& h = changes_.stiffness();
   const double b = target.foot_half_width_mm();
   facet_per_norm_x_ = std::sqrt(h[3] + h[2] * b * b);
@@ -143,6 +144,17 @@ void EnergyBound::open_gaps(std::size_t module) {
     nodes_[base::at(other)].is_host = true;
     changes_.open_gap(module, d, u_[module], u_[base::at(other)]);
   }
+}
+
+/// Of all modules that are there, by where they are now.
+verdict::MovedMass EnergyBound::moved_mass() const {
+  verdict::MovedMass moved;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    if (nodes_[i].is_there) {
+      moved.add(target_.mass(i), u_[i][0], u_[i][1]);
+    }
+  }
+  return moved;
 }
 
 /// The force on a stuck facet whose module moves by u, in the facet's middle.
@@ -351,6 +363,8 @@ bool EnergyBound::begin(const std::vector<Element>& elements, const verdict::Ass
   for (std::size_t i = 0; i < elements.size(); ++i) {
     u_[base::at(elements[i])] = solved.equilibrium.displacement[i];
   }
+  sway_.begin(elements);
+  still_moved_ = moved_ = moved_mass();
   if (section_ != nullptr) {
     still_ = u_;
     own_error_ = solved_error_;
@@ -601,10 +615,12 @@ std::optional<double> EnergyBound::add(Element element) {
   node.is_new = true;
   node.place = new_.size();
   cuts_.add(module);
+  sway_.attach(module);
   if (section_ != nullptr) {
     return add_above_section(module);
   }
   take_place(module);
+  moved_.add(target_.mass(module), u_[module][0], u_[module][1]);
   open_gaps(module);
   for (std::size_t facet = first_facet_[module]; facet < first_facet_[module + 1]; ++facet) {
     facets_.push_back(facet);
@@ -664,6 +680,13 @@ void EnergyBound::move_with_section() {
       take_place(new_[i]);
     }
     std::ranges::for_each(new_, [&](std::size_t module) { take_place(module); });
+  }
+  const verdict::MovedMass by_section = section_->moved_mass(resultant_);
+  moved_ = still_moved_;
+  moved_.x_kg_mm += by_section.x_kg_mm;
+  moved_.y_kg_mm += by_section.y_kg_mm;
+  for (const std::size_t module : new_) {
+    moved_.add(target_.mass(module), u_[module][0], u_[module][1]);
   }
 }
 
@@ -733,6 +756,7 @@ std::optional<double> EnergyBound::improve(const std::vector<Vec>& displacement,
   settle_new();
   watched_.improve(known.moved);
   u_ = displacement;
+  moved_ = moved_mass();
   solved_error_ = known.energy_error;
   solved_ratio_ = known.load_ratio;
   std::ranges::for_each(facets_, [&](std::size_t facet) { look_at_facet(facet); });

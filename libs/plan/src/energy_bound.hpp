@@ -16,10 +16,12 @@
 #include "holdfast/model/robot.hpp"
 #include "holdfast/plan/element_set.hpp"
 #include "holdfast/verdict/assessment.hpp"
+#include "holdfast/verdict/moved_mass.hpp"
 #include "load_spread.hpp"
 #include "local_adjoint.hpp"
 #include "local_balance.hpp"
 #include "section_response.hpp"
+#include "sway_bound.hpp"
 #include "watched_facets.hpp"
 
 namespace holdfast::plan {
@@ -45,6 +47,8 @@ namespace holdfast::plan {
 ///
 /// Where c(solved) + c(change of s) / 2 is too much c((s + h w) / 2) is found itself, of every beam
 /// in which s or h w has changed.
+///
+/// The centre of mass moves as u says, give or take what |s - h w| leaves open (SwayBound).
 ///
 /// Facets for which that is too coarse are looked at by what is known of them from the modules
 /// around (LocalAdjoint) or, where somebody has found it, from the whole robot (FacetAdjoint).
@@ -98,6 +102,11 @@ class EnergyBound {
     return std::sqrt(std::max(0.0, changes_.energy())) + solved_error_;
   }
 
+  /// By how far bending moves the centre of mass of the robot that is there now, in plan, at most.
+  double shift_mm() const {
+    return moved_.shift_mm(sway_.error_per_norm() * (energy_error() + solved_error_));
+  }
+
   /// That of a module that has a facet, or is new or beside such a one.
   const base::Vec6<double>& displacement(std::size_t module) const { return u_[module]; }
 
@@ -148,6 +157,7 @@ class EnergyBound {
   std::optional<double> add_above_section(std::size_t module);
   void move_with_section();
   void bear_by_section();
+  verdict::MovedMass moved_mass() const;
   void look_at_facet(std::size_t facet);
   Vec trial_force(const model::Facet& facet, const Vec& u) const;
   std::array<double, 3> product_with(const LocalAdjoint& nearby) const;
@@ -176,6 +186,9 @@ class EnergyBound {
   std::vector<std::optional<LocalAdjoint>> nearby_;  ///< By facet, as far as asked for.
   WatchedFacets watched_;
   CutConnections cuts_;
+  SwayBound sway_;
+  verdict::MovedMass moved_;             ///< By u_, of all modules that are there,
+  verdict::MovedMass still_moved_;       ///< and when the robot was solved.
   std::map<std::size_t, int> doubtful_;  ///< As take_doubtful() says.
   double solved_ratio_ = 0;
   double solved_error_ = 0;

@@ -24,6 +24,10 @@ ElementSet whole_of(const OrderTask& task) {
   return whole;
 }
 
+base::Error bad_start(std::string message) {
+  return {.code = base::ErrorCode::kBadInput, .message = std::move(message), .where = kAtStart};
+}
+
 /// The modules in these cells.
 base::Result<ElementSet> find_modules(const OrderTask& task, const std::vector<Cell>& cells) {
   model::CellIndex index(task.target.existing.size());
@@ -34,7 +38,7 @@ base::Result<ElementSet> find_modules(const OrderTask& task, const std::vector<C
   for (const Cell& cell : cells) {
     const std::int32_t found = index.find(cell);
     if (found == model::CellIndex::kNone) {
-      return base::bad_input(fmt::format(
+      return bad_start(fmt::format(
           "the start has a module in {}, where the target has none: it must be a part of it",
           model::text(cell)));
     }
@@ -85,14 +89,14 @@ base::Result<std::vector<ElementSet>> find_starts(const OrderTask& task,
   }
   for (const Cell& cell : task.target.fixed) {
     if (std::ranges::find(cells, cell) == cells.end()) {
-      return base::bad_input(
+      return bad_start(
           fmt::format("the fixed module {} is not in the start: no step attaches a fixed module",
                       model::text(cell)));
     }
   }
   const auto start = model::Robot::create(part_of(task.target, modules.value()));
   if (!start) {
-    return base::bad_input(
+    return bad_start(
         fmt::format("the start: {}{}", start.error().message,
                     task.start.empty() ? "; give one that connects the fixed modules" : ""));
   }
@@ -249,8 +253,7 @@ base::Result<RobotOrder> find_robot_order(const OrderTask& task, const RobotOrde
   if (!task.start.empty()) {
     const Judgement start = growth.judge(made.starts.front());
     if (!start.is_safe()) {
-      return base::bad_input(
-          fmt::format("the start is not safe: {}", verdict::name(start.verdict)));
+      return bad_start(fmt::format("the start is not safe: {}", verdict::name(start.verdict)));
     }
   }
   const Patience patience(options.seconds_max, options.is_interrupted);

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <atomic>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <memory>
 
 #include "holdfast/base/rng.hpp"
 #include "holdfast/host/team.hpp"
+#include "holdfast/verdict/moved_mass.hpp"
 #include "holdfast/verdict/rigid_body.hpp"
 
 namespace holdfast::plan {
@@ -23,6 +25,9 @@ constexpr std::uint64_t kDisturbance = 4;
 /// that is solved; but of so many facets after a run at most.
 constexpr int kDoubtMin = 32;
 constexpr std::size_t kAdjointCountMax = 16;
+
+/// Where no support polygon decides.
+constexpr double kNoEdge = std::numeric_limits<double>::infinity();
 
 std::vector<std::size_t> supports_and(const model::Robot& target, const ElementSet& core) {
   std::vector<std::size_t> sources;
@@ -302,6 +307,22 @@ base::Result<model::Robot> RobotGrowth::robot(const ElementSet& state) const {
   return model::Robot::create(part_of(spec_, state), 1);
 }
 
+/// What bending may move the centre of mass by, as far as rounding of the margin leaves no doubt.
+double RobotGrowth::room_mm(Balance& balance) const {
+  return (balance.margin() - Balance::kMarginDoubt) * target_.material().pitch_mm;
+}
+
+/// By how far displacements of a state's modules move its centre of mass.
+double RobotGrowth::shift_mm(const ElementSet& state,
+                             const std::vector<base::Vec6<double>>& displacement) const {
+  verdict::MovedMass moved;
+  const std::vector<Element> elements = state.elements();
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    moved.add(target_.mass(base::at(elements[i])), displacement[i][0], displacement[i][1]);
+  }
+  return moved.shift_mm();
+}
+
 /// A state of modules that hang together, safe as the growing factorization shows.
 std::optional<verdict::Assessment> RobotGrowth::assess_by_factors(const ElementSet& state) {
   if (!growing_.is_thin() || !(balance_ || is_bonded_)) {
@@ -311,11 +332,15 @@ std::optional<verdict::Assessment> RobotGrowth::assess_by_factors(const ElementS
   if (balance_) {
     move_to(state);
     margin_mm = balance_->margin() * target_.material().pitch_mm;
-    if (!(balance_->margin() > Balance::kMarginDoubt)) {
+    if (!(room_mm(*balance_) > 0)) {
       return std::nullopt;
     }
   }
   auto assessment = growing_.assess_safe(state);
+  if (assessment && balance_ &&
+      !(shift_mm(state, assessment->equilibrium.displacement) < room_mm(*balance_))) {
+    return std::nullopt;  // A check decides, and says so.
+  }
   if (assessment) {
     assessment->simplified.margin_mm = margin_mm;
     assessment->stability_rule =
@@ -382,13 +407,14 @@ verdict::Assessment RobotGrowth::assess_alone(const ElementSet& state) const {
 }
 
 /// A bound of the load ratio of the state that both tools have come to, by solutions that follow
-/// the robot.
-std::optional<double> RobotGrowth::bound_by_following(const Tools& tools) {
+/// the robot; none if that, or how far the centre of mass moves, is too much.
+std::optional<double> RobotGrowth::bound_by_following(const Tools& tools, double room_mm) {
   auto known = tools.followed->solve();
   for (int i = 0; known; ++i) {
     const auto ratio = tools.bound.improve(tools.followed->displacement(), *known);
-    if (ratio || i == kImprovementMax) {
-      return ratio;
+    const bool is_certified = ratio && tools.bound.shift_mm() < room_mm;
+    if (is_certified || i == kImprovementMax) {
+      return is_certified ? ratio : std::nullopt;
     }
     known = tools.followed->improve();
   }
@@ -408,7 +434,6 @@ std::vector<Judgement> RobotGrowth::judge_piece(ElementSet state, Sense sense,
       balance->add(element);
     }
   }
-  const double pitch_mm = target_.material().pitch_mm;
   std::vector<Judgement> judgements;
   bool has_bound = false;
   bool is_followed = false;
@@ -420,22 +445,25 @@ std::vector<Judgement> RobotGrowth::judge_piece(ElementSet state, Sense sense,
     if (balance) {
       balance->add(element);
     }
-    const bool stands = !balance || balance->margin() > Balance::kMarginDoubt;
+    const double room_mm = balance ? this->room_mm(*balance) : kNoEdge;
     auto ratio = has_bound ? tools.bound.add(element) : std::nullopt;
+    if (ratio && !(tools.bound.shift_mm() < room_mm)) {
+      ratio.reset();
+    }
     is_followed =
         is_followed && target_.modules()[base::at(element)].support != model::Support::kFixed;
     if (is_followed) {
       tools.followed->add(element);
     }
     bool by_following = false;
-    if (is_followed && stands && !ratio && tools.followed->worth().can_pay()) {
-      ratio = bound_by_following(tools);
+    if (is_followed && room_mm > 0 && !ratio && tools.followed->worth().can_pay()) {
+      ratio = bound_by_following(tools, room_mm);
       by_following = ratio.has_value();
       if (!ratio) {
         tools.followed->worth().end(tools.followed->iteration_count());
       }
     }
-    if (ratio && stands) {
+    if (ratio) {
       if (is_followed) {
         tools.followed->worth().certify(by_following);
       }
@@ -443,7 +471,7 @@ std::vector<Judgement> RobotGrowth::judge_piece(ElementSet state, Sense sense,
           {.verdict = verdict::Verdict::kSafe, .load_ratio_max = ratio, .load_ratio_high = ratio});
       judgements.back().is_bound = true;
       if (balance) {
-        judgements.back().margin_mm = balance->margin() * pitch_mm;
+        judgements.back().margin_mm = balance->margin() * target_.material().pitch_mm;
       }
       continue;
     }

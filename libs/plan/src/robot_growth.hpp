@@ -97,6 +97,9 @@ class RobotGrowth final : public GrowingStructure {
   void move_to(const ElementSet& state);
   void add(Element element);
   void remove(Element element);
+  double room_mm(Balance& balance) const;
+  double shift_mm(const ElementSet& state,
+                  const std::vector<base::Vec6<double>>& displacement) const;
   std::optional<verdict::Assessment> assess_by_factors(const ElementSet& state);
   verdict::Assessment assess_alone(const ElementSet& state) const;
   bool is_connected(const ElementSet& state) const;
@@ -109,7 +112,7 @@ class RobotGrowth final : public GrowingStructure {
   std::vector<std::size_t> doubtful_facets(const ElementSet& state);
   void grow_adjoints(const ElementSet& state, std::span<const Element> run);
   void renew_adjoints(const ElementSet& state, const std::function<bool()>& is_late);
-  static std::optional<double> bound_by_following(const Tools& tools);
+  static std::optional<double> bound_by_following(const Tools& tools, double room_mm);
   void put_toppling_last(std::vector<Element>& list, Sense sense);
 
   const model::RobotSpec& spec_;

@@ -272,4 +272,27 @@ std::vector<std::string_view> differences_of_modules(const RobotState& a, const 
                 {is_connected_alike, "connections"}});
 }
 
+std::vector<std::string_view> differences(const model::RobotSpec& a, const model::RobotSpec& b) {
+  std::vector<std::string_view> names = differences_of_surroundings(a, b);
+  if (model::Robot::create(a, 1) && model::Robot::create(b, 1)) {
+    const auto more = differences_of_modules(RobotState(a), RobotState(b));
+    names.insert(names.end(), more.begin(), more.end());
+  }
+  return names;
+}
+
+std::vector<std::string_view> differences_of_targets(const model::RobotSpec& a,
+                                                     const model::RobotSpec& b) {
+  const auto cells = [](const model::RobotSpec& spec) {
+    std::vector<Cell> all = spec.existing;
+    std::ranges::sort(all);
+    return all;
+  };
+  std::vector<std::string_view> names = differences(a, b);
+  if (cells(a) != cells(b)) {
+    names.insert(names.begin(), "cells");
+  }
+  return names;
+}
+
 }  // namespace holdfast::plan

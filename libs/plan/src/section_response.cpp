@@ -195,6 +195,15 @@ SectionResponse::Vec SectionResponse::displacement(std::size_t module,
   return sum;
 }
 
+verdict::MovedMass SectionResponse::moved_mass(const Resultant& resultant) const {
+  verdict::MovedMass sum;
+  for (std::size_t k = 0; k < 3; ++k) {
+    sum.x_kg_mm += resultant[k] * responses_[k].moved.x_kg_mm;
+    sum.y_kg_mm += resultant[k] * responses_[k].moved.y_kg_mm;
+  }
+  return sum;
+}
+
 double SectionResponse::load_ratio(const Resultant& resultant) const {
   double sum = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -246,9 +255,12 @@ bool SectionResponse::solve(const model::Robot& core, solver::Precision precisio
     }
     Response& response = responses_[k];
     response.displacement = system->displacement();
+    response.moved = {};
     double work = 0;
     for (std::size_t i = 0; i < loads.size(); ++i) {
-      work += base::dot(loads[i], response.displacement[i]);
+      const Vec& u = response.displacement[i];
+      response.moved.add(core.mass(i), u[0], u[1]);
+      work += base::dot(loads[i], u);
     }
     response.error = system->is_exact() ? 0
                                         : verdict::kEnergyFactor * kSectionTolerance *

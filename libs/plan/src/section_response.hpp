@@ -12,6 +12,7 @@
 #include "holdfast/model/robot.hpp"
 #include "holdfast/plan/element_set.hpp"
 #include "holdfast/solver/linear_system.hpp"
+#include "holdfast/verdict/moved_mass.hpp"
 
 namespace holdfast::plan {
 
@@ -55,6 +56,9 @@ class SectionResponse {
   /// How a module of the core moves by R more.
   Vec displacement(std::size_t module, const Resultant& resultant) const;
 
+  /// How the core's mass moves by R more; its mass is not counted.
+  verdict::MovedMass moved_mass(const Resultant& resultant) const;
+
   /// No connection of the core gains a larger load ratio by R.
   double load_ratio(const Resultant& resultant) const;
 
@@ -66,6 +70,7 @@ class SectionResponse {
   struct Response {
     std::vector<Vec> displacement;  ///< By module of the core.
     double error = 0;               ///< In the energy norm.
+    verdict::MovedMass moved;       ///< Of all modules.
     std::array<double, 2> ratio{};  ///< The largest load ratio where the component is positive,
                                     ///< and where it is negative.
   };

@@ -11,10 +11,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "general_robot.hpp"
 #include "hard_robot.hpp"
+#include "holdfast/base/rng.hpp"
 #include "holdfast/model/families.hpp"
+#include "holdfast/plan/sequence.hpp"
 #include "random_robot.hpp"
 #include "seeds.hpp"
 #include "standing_robot.hpp"
@@ -296,6 +299,80 @@ TEST(Candidates, are_not_below_the_floor) {
       }
     }
   }
+}
+
+/// A robot that grew at random about a module on the floor's level, some of whose modules on that
+/// level are fixed, beside an obstacle in two of three; modules that are fixed may hold others
+/// below.
+RobotSpec robot_about_floor(std::uint64_t seed) {
+  base::Rng rng(seed);
+  RobotSpec spec{.existing = {{0, 0, 0}}, .lattice = test::kLattices[seed % 4]};
+  std::vector<base::Direction> directions;
+  for (const base::Direction direction : base::directions(spec.lattice)) {
+    directions.push_back(direction);
+  }
+  const std::size_t count = 2 + rng.below(8);
+  const std::int32_t lowest = rng.below(4) == 0 ? -1 : 0;
+  while (spec.existing.size() < count) {
+    const Cell cell = base::neighbour(spec.lattice, spec.existing[rng.below(spec.existing.size())],
+                                      directions[rng.below(directions.size())]);
+    if (cell.z >= lowest && std::ranges::count(spec.existing, cell) == 0) {
+      spec.existing.push_back(cell);
+    }
+  }
+  for (const Cell& cell : spec.existing) {
+    if (cell.z == 0 && rng.below(2) == 0) {
+      spec.fixed.push_back(cell);
+    }
+  }
+  if (seed % 3 != 0) {
+    const std::vector<Cell> cells = free_cells(spec);
+    const auto hold = seed % 2 == 0 ? model::Hold::kBonded : model::Hold::kContact;
+    spec.obstacles.push_back(
+        {.from = {}, .to = {}, .cells = {cells[rng.below(cells.size())]}, .touch = {.hold = hold}});
+  }
+  return spec;
+}
+
+// `next` listed such places under modules that were fixed, and `steps` and `check` let modules be
+// there. HOLDFAST_FLOOR_CASES=N tries as many robots as that.
+TEST(Candidates, are_not_below_a_floor_that_others_stand_on_nor_are_steps_or_robots) {
+  const char* const wanted = std::getenv("HOLDFAST_FLOOR_CASES");
+  const std::uint64_t seed_count =
+      wanted != nullptr ? std::strtoull(wanted, nullptr, 10) : holdfast::test::campaign(200U);
+  std::size_t robot_count = 0;
+  std::size_t barred_count = 0;
+  std::size_t free_count = 0;
+  for (std::uint64_t seed = 0; seed < seed_count; ++seed) {
+    const RobotSpec spec = robot_about_floor(seed);
+    if (!model::Robot::create(spec)) {
+      continue;
+    }
+    ++robot_count;
+    const bool is_floor_in_use = std::ranges::any_of(spec.existing, [&](const Cell& cell) {
+      return cell.z == 0 && std::ranges::count(spec.fixed, cell) == 0;
+    });
+    for (const Candidate& candidate : judge_candidates(spec, free_cells(spec)).candidates) {
+      const Cell& cell = candidate.cell;
+      if (cell.z >= 0) {
+        continue;
+      }
+      free_count += candidate.is_robot ? 1 : 0;
+      if (!is_floor_in_use) {
+        continue;
+      }
+      ++barred_count;
+      RobotSpec more = spec;
+      more.planned.push_back(cell);
+      EXPECT_FALSE(candidate.is_robot) << seed << model::text(cell);
+      EXPECT_FALSE(model::Robot::create(more)) << seed << model::text(cell);
+      const std::vector<model::Step> steps = {{.attach = {cell}}};
+      EXPECT_FALSE(judge_sequence(spec, steps)) << seed << model::text(cell);
+    }
+  }
+  EXPECT_GT(robot_count, seed_count / 2);
+  EXPECT_GT(barred_count, seed_count / 2);
+  EXPECT_GT(free_count, 0U);
 }
 
 TEST(Candidates, are_sorted_safe_first_and_by_load_ratio) {

@@ -15,6 +15,7 @@
 #include "holdfast/mechanics/support_corners.hpp"
 #include "holdfast/model/lattice_beam.hpp"
 #include "holdfast/model/mass.hpp"
+#include "holdfast/verdict/moved_mass.hpp"
 
 namespace holdfast::verdict {
 namespace {
@@ -271,27 +272,22 @@ std::optional<Lean> find_lean(const model::Robot& robot, const Assessment& asses
     return std::nullopt;
   }
   const auto& displacement = assessment.equilibrium.displacement;
-  std::array<double, 3> moment{};  // Of x and y, kg mm; and the mass, kg.
-  const auto add = [&](double mass_kg, double x, double y) {
-    moment[0] += mass_kg * x;
-    moment[1] += mass_kg * y;
-    moment[2] += mass_kg;
-  };
+  MovedMass moved;
   for (std::size_t i = 0; i < model::own_module_count(robot, part); ++i) {
-    add(robot.mass(i), displacement[i][0], displacement[i][1]);
+    moved.add(robot.mass(i), displacement[i][0], displacement[i][1]);
   }
   for (const model::CarriedMass& carried : robot.carried()) {
     const auto carrier = std::ranges::find(robot.modules(), carried.carrier, &model::Module::cell);
     const auto& u = displacement[static_cast<std::size_t>(carrier - robot.modules().begin())];
     const auto& arm = carried.offset_mm;
-    add(carried.mass_kg, u[0] + u[4] * arm[2] - u[5] * arm[1],
-        u[1] + u[5] * arm[0] - u[3] * arm[2]);
+    moved.add(carried.mass_kg, u[0] + u[4] * arm[2] - u[5] * arm[1],
+              u[1] + u[5] * arm[0] - u[3] * arm[2]);
   }
-  for (double& sum : moment) {
-    sum = host::sum(model::ranks_of(part), sum);
+  for (double* sum : {&moved.x_kg_mm, &moved.y_kg_mm, &moved.mass_kg}) {
+    *sum = host::sum(model::ranks_of(part), *sum);
   }
-  const double x = moment[0] / moment[2];
-  const double y = moment[1] / moment[2];
+  const double x = moved.x_kg_mm / moved.mass_kg;
+  const double y = moved.y_kg_mm / moved.mass_kg;
   Lean lean{.shift_mm = std::hypot(x, y), .margin_mm = std::numeric_limits<double>::infinity()};
   for (std::size_t i = 0; i < body.polygon.size(); ++i) {
     const PlanPoint& a = body.polygon[i];

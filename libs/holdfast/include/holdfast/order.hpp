@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -49,8 +50,17 @@ struct OrderRequest {
 /// io::make_spec() and plan::find_robot_order().
 base::Result<io::OrderReport> seek_order(const io::Document& target, const OrderRequest& request);
 
-/// Replays the certificate in a text, see plan::verify().
-base::Result<plan::CertificateCheck> verify_order_certificate(std::string_view text,
-                                                              int thread_count = 0);
+/// What a certificate has proved, and of which robot.
+struct ProvedOrder {
+  std::string name;  ///< As the certificate says; may be empty.
+  plan::OrderTask task;
+  plan::CertificateCheck check;
+};
+
+/// Replays the certificate in a text, see plan::verify(). Of another robot than `target` it is an
+/// error.
+base::Result<ProvedOrder> verify_order_certificate(
+    std::string_view text, const std::optional<model::RobotSpec>& target = {},
+    int thread_count = 0);
 
 }  // namespace holdfast

@@ -21,7 +21,13 @@ base::Result<model::RobotSpec> order_target(const Document& document);
 std::string write_order_certificate(const Document& target,
                                     const plan::OrderCertificate& certificate);
 
-base::Result<plan::OrderCertificate> read_order_certificate(std::string_view text);
+/// A certificate, and the name of its target, which may be empty.
+struct NamedOrderCertificate {
+  std::string name;
+  plan::OrderCertificate certificate;
+};
+
+base::Result<NamedOrderCertificate> read_order_certificate(std::string_view text);
 
 /// Whether a text says that it is a certificate of an order.
 bool is_order_certificate(std::string_view text);
@@ -29,6 +35,7 @@ bool is_order_certificate(std::string_view text);
 /// A structure whose modules are those of the order's start and whose steps attach all others (or,
 /// of an order that was not found, those that were reached), or where the robot is taken apart one
 /// whose modules are the target's and whose steps detach them.
+/// Of an order without steps there is one, which does nothing, so that its state is judged.
 /// If one that is attached has a kind or a mass of its own the steps are planned ones and say so.
 base::Result<Document> order_steps(const Document& target, const plan::Order& order,
                                    bool is_reversed);

@@ -20,12 +20,16 @@ struct OrderReport {
   bool is_help_sought = false;
   bool is_reversed = false;  ///< Taken apart instead of built.
   double seconds = 0;
+  bool is_interrupted = false;  ///< The search was ended from outside.
 };
 
 /// See docs/formats.md.
 std::string order_json(const OrderReport& report);
 
 std::string order_text(const OrderReport& report);
+
+/// Behind that: where the order begins, and its first steps, for those who have it written nowhere.
+std::string order_way_text(const OrderReport& report);
 
 /// "found", "none", "not-found".
 const char* name(plan::OrderOutcome outcome);

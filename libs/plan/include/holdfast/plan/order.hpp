@@ -62,8 +62,11 @@ struct RobotOrder {
   std::optional<double> margin_min_mm = {};
 };
 
+/// Where an error is that is the start's and not the target's.
+inline constexpr const char* kAtStart = "start";
+
 /// Errors: the target or the start is no robot, the start has modules that the target has not or is
-/// not safe; a source is missing or is taken.
+/// not safe (then `where` is kAtStart); a source is missing or is taken.
 base::Result<RobotOrder> find_robot_order(const OrderTask& task,
                                           const RobotOrderOptions& options = {});
 

@@ -134,6 +134,14 @@ std::vector<std::string_view> differences_of_surroundings(const model::RobotSpec
 /// In what those modules differ that both robots have in the same cells.
 std::vector<std::string_view> differences_of_modules(const RobotState& a, const RobotState& b);
 
+/// In what two robots differ: their surroundings, and modules that both have in the same cells, as
+/// far as both are robots.
+std::vector<std::string_view> differences(const model::RobotSpec& a, const model::RobotSpec& b);
+
+/// The same, and in which cells modules are.
+std::vector<std::string_view> differences_of_targets(const model::RobotSpec& a,
+                                                     const model::RobotSpec& b);
+
 /// A pair of cells in ascending order.
 model::CellPair ordered(const model::CellPair& pair);
 
