@@ -421,58 +421,135 @@ std::optional<double> RobotGrowth::bound_by_following(const Tools& tools, double
   return std::nullopt;
 }
 
+/// Follows a run from its last state that was solved: which states after it are certified safe.
+class RobotGrowth::Piece {
+ public:
+  /// At the state before the run.
+  Piece(const RobotGrowth& growth, const ElementSet& state, Sense sense, const Tools& tools);
+
+  ~Piece() {
+    tools_.bound.end();
+    if (tools_.followed != nullptr) {
+      tools_.followed->end();
+    }
+  }
+
+  Piece(const Piece&) = delete;
+  Piece& operator=(const Piece&) = delete;
+
+  /// Goes on to the next state; its judgement if it is certified.
+  std::optional<Judgement> add(Element element);
+
+  /// Goes on from the state that it has come to, solved and safe, before so many others.
+  void begin(const ElementSet& state, const verdict::Assessment& assessment, std::size_t left);
+
+ private:
+  std::optional<double> ratio(Element element);
+  std::optional<double> followed_ratio(double room_mm);
+
+  const RobotGrowth& growth_;
+  const Tools& tools_;
+  bool can_certify_;
+  std::optional<Balance> balance_;  ///< Where the polygon decides.
+  bool has_bound_ = false;
+  bool is_followed_ = false;
+};
+
+RobotGrowth::Piece::Piece(const RobotGrowth& growth, const ElementSet& state, Sense sense,
+                          const Tools& tools)
+    : growth_(growth), tools_(tools), can_certify_(sense == Sense::kGrowing) {
+  if (growth.balance_ && can_certify_) {
+    balance_.emplace(growth.target_);
+    for (const Element element : state.elements()) {
+      balance_->add(element);
+    }
+  }
+}
+
+std::optional<Judgement> RobotGrowth::Piece::add(Element element) {
+  if (balance_) {
+    balance_->add(element);
+  }
+  const auto largest = ratio(element);
+  if (!largest) {
+    return std::nullopt;
+  }
+  Judgement judgement{
+      .verdict = verdict::Verdict::kSafe, .load_ratio_max = largest, .load_ratio_high = largest};
+  judgement.is_bound = true;
+  if (balance_) {
+    judgement.margin_mm = balance_->margin() * growth_.target_.material().pitch_mm;
+  }
+  return judgement;
+}
+
+/// A bound of the load ratio with one more element; none if it does not certify the state.
+std::optional<double> RobotGrowth::Piece::ratio(Element element) {
+  const double room_mm = balance_ ? growth_.room_mm(*balance_) : kNoEdge;
+  auto ratio = has_bound_ ? tools_.bound.add(element) : std::nullopt;
+  if (ratio && !(tools_.bound.shift_mm() < room_mm)) {
+    ratio.reset();
+  }
+  is_followed_ = is_followed_ &&
+                 growth_.target_.modules()[base::at(element)].support != model::Support::kFixed;
+  if (!is_followed_) {
+    return ratio;
+  }
+  tools_.followed->add(element);
+  if (ratio) {
+    tools_.followed->worth().certify(false);
+    return ratio;
+  }
+  return followed_ratio(room_mm);
+}
+
+/// The same by solutions that follow the robot, where they can pay.
+std::optional<double> RobotGrowth::Piece::followed_ratio(double room_mm) {
+  FollowingWorth& worth = tools_.followed->worth();
+  if (!(room_mm > 0) || !worth.can_pay()) {
+    return std::nullopt;
+  }
+  const auto ratio = bound_by_following(tools_, room_mm);
+  if (ratio) {
+    worth.certify(true);
+  } else {
+    worth.end(tools_.followed->iteration_count());
+  }
+  return ratio;
+}
+
+void RobotGrowth::Piece::begin(const ElementSet& state, const verdict::Assessment& assessment,
+                               std::size_t left) {
+  const bool is_decided_here =
+      assessment.stability_rule != verdict::StabilityRule::kPolygon || balance_.has_value();
+  const bool is_large = state.size() >= kFollowedMin;
+  const bool is_slender =
+      can_certify_ && is_large && tools_.section != nullptr && tools_.section->find(state);
+  const bool has_section = is_slender && left >= kSectionMin && tools_.section->solve();
+  has_bound_ =
+      can_certify_ && is_decided_here &&
+      tools_.bound.begin(state.elements(), assessment, has_section ? tools_.section : nullptr);
+  is_followed_ = has_bound_ && !is_slender && tools_.followed != nullptr && is_large &&
+                 tools_.followed->worth().begin(assessment.equilibrium.iteration_count);
+  if (is_followed_) {
+    tools_.followed->begin(state, assessment, tools_.bound.cuts());
+  }
+}
+
 /// Judges states one after another until one is not safe: those that can be certified so by what is
 /// known of the last that was solved, all others solved.
 std::vector<Judgement> RobotGrowth::judge_piece(ElementSet state, Sense sense,
                                                 std::span<const Element> run,
                                                 const Tools& tools) const {
-  const bool can_certify = sense == Sense::kGrowing;
-  std::optional<Balance> balance;
-  if (balance_ && can_certify) {
-    balance.emplace(target_);
-    for (const Element element : state.elements()) {
-      balance->add(element);
-    }
-  }
+  Piece piece(*this, state, sense, tools);
   std::vector<Judgement> judgements;
-  bool has_bound = false;
-  bool is_followed = false;
   for (const Element element : run) {
     if (!judgements.empty() && tools.is_late()) {
       break;
     }
     state = changed(std::move(state), sense, {&element, 1});
-    if (balance) {
-      balance->add(element);
-    }
-    const double room_mm = balance ? this->room_mm(*balance) : kNoEdge;
-    auto ratio = has_bound ? tools.bound.add(element) : std::nullopt;
-    if (ratio && !(tools.bound.shift_mm() < room_mm)) {
-      ratio.reset();
-    }
-    is_followed =
-        is_followed && target_.modules()[base::at(element)].support != model::Support::kFixed;
-    if (is_followed) {
-      tools.followed->add(element);
-    }
-    bool by_following = false;
-    if (is_followed && room_mm > 0 && !ratio && tools.followed->worth().can_pay()) {
-      ratio = bound_by_following(tools, room_mm);
-      by_following = ratio.has_value();
-      if (!ratio) {
-        tools.followed->worth().end(tools.followed->iteration_count());
-      }
-    }
-    if (ratio) {
-      if (is_followed) {
-        tools.followed->worth().certify(by_following);
-      }
-      judgements.push_back(
-          {.verdict = verdict::Verdict::kSafe, .load_ratio_max = ratio, .load_ratio_high = ratio});
-      judgements.back().is_bound = true;
-      if (balance) {
-        judgements.back().margin_mm = balance->margin() * target_.material().pitch_mm;
-      }
+    if (auto certified = piece.add(element)) {
+      judgements.push_back(*std::move(certified));
       continue;
     }
     const verdict::Assessment assessment = tools.assess(state);
@@ -480,25 +557,7 @@ std::vector<Judgement> RobotGrowth::judge_piece(ElementSet state, Sense sense,
     if (!judgements.back().is_safe()) {
       break;
     }
-    const bool is_decided_here =
-        assessment.stability_rule != verdict::StabilityRule::kPolygon || balance.has_value();
-    const bool is_large = state.size() >= kFollowedMin;
-    const bool is_slender =
-        can_certify && is_large && tools.section != nullptr && tools.section->find(state);
-    const bool has_section =
-        is_slender && run.size() - judgements.size() >= kSectionMin && tools.section->solve();
-    has_bound =
-        can_certify && is_decided_here &&
-        tools.bound.begin(state.elements(), assessment, has_section ? tools.section : nullptr);
-    is_followed = has_bound && !is_slender && tools.followed != nullptr && is_large &&
-                  tools.followed->worth().begin(assessment.equilibrium.iteration_count);
-    if (is_followed) {
-      tools.followed->begin(state, assessment, tools.bound.cuts());
-    }
-  }
-  tools.bound.end();
-  if (tools.followed != nullptr) {
-    tools.followed->end();
+    piece.begin(state, assessment, run.size() - judgements.size());
   }
   return judgements;
 }

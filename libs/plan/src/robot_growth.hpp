@@ -92,6 +92,8 @@ class RobotGrowth final : public GrowingStructure {
     const std::function<bool()>& is_late;
   };
 
+  class Piece;
+
   Rank rank(Element element) const;
   void set_seed(std::uint64_t seed);
   void move_to(const ElementSet& state);
