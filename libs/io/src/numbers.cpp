@@ -83,6 +83,15 @@ std::optional<Color> parse_color(std::string_view text) {
                static_cast<int>(value & 0xFFU)};
 }
 
+std::optional<Color> nearest_color(std::string_view text) {
+  const auto triple = parse_triple<double>(text);
+  if (!triple) {
+    return std::nullopt;
+  }
+  const auto part = [](double number) { return static_cast<int>(std::clamp(number, 0.0, 255.0)); };
+  return Color{part((*triple)[0]), part((*triple)[1]), part((*triple)[2])};
+}
+
 template std::optional<std::int32_t> parse_number<std::int32_t>(std::string_view);
 template std::optional<double> parse_number<double>(std::string_view);
 template std::optional<std::array<std::int32_t, 3>> parse_triple<std::int32_t>(std::string_view);

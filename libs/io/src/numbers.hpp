@@ -31,6 +31,9 @@ std::optional<std::array<Number, 3>> parse_triple(std::string_view text);
 /// The colour that "r,g,b", "#rrggbb" or "0xrrggbb" is.
 std::optional<Color> parse_color(std::string_view text);
 
+/// What stands for three numbers that are no colour: their whole parts, in the range of colours.
+std::optional<Color> nearest_color(std::string_view text);
+
 inline constexpr std::string_view kColorsAllowed =
     "allowed are three integers from 0 to 255, such as 1,2,3, or #010203";
 

@@ -73,7 +73,8 @@ class ObstacleListReader {
     const base::Cell cell = read_cell("position", *position);
     const std::string* const color_text = find_attribute(attributes, "color");
     const std::optional<Color> color =
-        color_text == nullptr ? std::nullopt : read_color(*color_text);
+        color_text == nullptr ? std::nullopt
+                              : reading_.take_color(kObstacleElement, *color_text, where_);
     const bool begins = std::ranges::any_of(
         kBeginning, [&](const char* name) { return find_attribute(attributes, name) != nullptr; });
     if (begins || extension_.obstacles.empty() || extension_.obstacle_colors.back() != color ||
@@ -117,14 +118,6 @@ class ObstacleListReader {
       return {};
     }
     return {(*triple)[0], (*triple)[1], (*triple)[2]};
-  }
-
-  std::optional<Color> read_color(const std::string& text) {
-    const auto color = parse_color(text);
-    if (!color) {
-      refuse(fmt::format("color of <obstacle> is {}, {}", excerpt(text), kColorsAllowed));
-    }
-    return color;
   }
 
   model::Hold read_hold(const std::string& text) {

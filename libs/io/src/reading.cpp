@@ -83,6 +83,19 @@ bool Reading::take_room(std::size_t cell_count, const Where& where) {
   return !has_failed();
 }
 
+std::optional<Color> Reading::take_color(std::string_view element, std::string_view text,
+                                         const Where& where) {
+  if (auto color = parse_color(text)) {
+    return color;
+  }
+  const std::optional<Color> near = nearest_color(text);
+  warn(fmt::format("color of <{}> is {}, {}: {}", element, excerpt(text), kColorsAllowed,
+                   near ? fmt::format("{},{},{} is taken", near->red, near->green, near->blue)
+                        : "it is ignored"),
+       where);
+  return near;
+}
+
 void Reading::take_known_answer(KnownAnswer answer, const Where& where) {
   if (!is_known_verdict(answer.verdict)) {
     fail({base::ErrorCode::kBadInput,

@@ -56,6 +56,11 @@ class Reading {
   /// Counts cells that are about to be read; false, and a failure, if they become too many.
   bool take_room(std::size_t cell_count, const Where& where);
 
+  /// The colour of an XML element. A colour decides nothing, so one that cannot be is noted and not
+  /// refused: VisibleSim exports fractions, of which it takes the whole part itself.
+  std::optional<Color> take_color(std::string_view element, std::string_view text,
+                                  const Where& where);
+
   /// Keeps it if its verdict is one.
   void take_known_answer(KnownAnswer answer, const Where& where);
 

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <set>
 
 #include "holdfast/io/document.hpp"
+#include "holdfast/io/lattice_names.hpp"
 #include "holdfast/model/robot_catalogue.hpp"
 #include "json_values.hpp"
 #include "robot_defaults.hpp"
@@ -270,6 +272,28 @@ std::vector<model::Payload> present_payloads(const Document& document) {
   return present;
 }
 
+bool is_connected(const Document& document, const base::Lattice& lattice) {
+  model::RobotSpec alone{.support_z = std::nullopt, .lattice = lattice};
+  std::ranges::transform(document.modules, std::back_inserter(alone.existing), &ModuleEntry::cell);
+  alone.fixed = {alone.existing.front()};
+  return model::Robot::create(alone).has_value();
+}
+
+/// A file for VisibleSim does not say its lattice: where another than the one taken connects the
+/// modules, the error names it.
+std::string other_lattice(const Document& document) {
+  if (document.modules.empty() || is_connected(document, document.extension.lattice)) {
+    return "";
+  }
+  const auto other = std::ranges::find_if(kNamedLattices, [&](const NamedLattice& row) {
+    return row.lattice != document.extension.lattice && is_connected(document, row.lattice);
+  });
+  return other == kNamedLattices.end()
+             ? ""
+             : fmt::format("; the lattice is {}, in {} it is connected",
+                           lattice_name(document.extension.lattice), other->name);
+}
+
 }  // namespace
 
 base::Result<model::RobotSpec> make_spec(const Document& document) {
@@ -342,8 +366,16 @@ base::Result<Sequence> make_sequence(const Document& document) {
 
 base::Result<model::Robot> make_robot(const Document& document, int thread_count) {
   const auto spec = make_spec(document);
-  return spec ? model::Robot::create(spec.value(), thread_count)
-              : base::Result<model::Robot>(spec.error());
+  if (!spec) {
+    return spec.error();
+  }
+  auto robot = model::Robot::create(spec.value(), thread_count);
+  if (!robot) {
+    base::Error error = robot.error();
+    error.message += other_lattice(document);
+    return error;
+  }
+  return robot;
 }
 
 }  // namespace holdfast::io

@@ -141,6 +141,8 @@ struct IndexRange {
   std::int32_t first = 0;
   std::int32_t last = -1;
 
+  bool operator==(const IndexRange&) const = default;
+
   std::size_t count() const { return static_cast<std::size_t>(std::max(0, last - first + 1)); }
 };
 
@@ -157,25 +159,58 @@ struct Box {
   }
 };
 
-/// In files with the root <vs>, boxes count in cells, and boxSize is how many.
+/// VisibleSim counts boxes in mm up to 2022, in cells since, when files came to have the root <vs>.
 bool counts_in_cells(const pugi::xml_node& box) {
   return box.parent().parent().parent().name() == std::string_view(kRootElement);
 }
 
-std::array<IndexRange, 3> read_box_ranges(XmlReading& reading, const pugi::xml_node& box) {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  const bool in_cells = counts_in_cells(box);
-  const Lengths pitch =
-      in_cells ? Lengths{1, 1, 1} : read_lengths(reading, box.parent(), "blockSize", kBlockSize);
-  const Lengths origin = read_lengths(reading, box, "boxOrigin", {0, 0, 0});
-  const Lengths size = read_lengths(reading, box, "boxSize", {kFar, kFar, kFar});
-  if (reading.document.extension.lattice != base::kCubic && !in_cells) {
+/// The cells of a box along the three axes.
+struct BoxRanges {
+  std::array<IndexRange, 3> axes;
+
+  std::size_t count() const { return axes[0].count() * axes[1].count() * axes[2].count(); }
+};
+
+/// What <blockBox> says, in mm or in cells.
+struct BoxText {
+  Lengths origin;
+  Lengths size;  ///< Infinite where the box reaches the end of the grid.
+};
+
+BoxRanges ranges_in_cells(const BoxText& box, const std::array<std::int32_t, 3>& grid) {
+  BoxRanges ranges;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double end = std::ceil(box.origin[i] + box.size[i]) - 1;
+    ranges.axes[i] = Box{box.origin[i], end, 1}.cells(grid[i]);
+  }
+  return ranges;
+}
+
+BoxRanges ranges_in_mm(const BoxText& box, const Lengths& pitch,
+                       const std::array<std::int32_t, 3>& grid) {
+  BoxRanges ranges;
+  for (std::size_t i = 0; i < 3; ++i) {
+    ranges.axes[i] = Box{box.origin[i], box.origin[i] + box.size[i], pitch[i]}.cells(grid[i]);
+  }
+  return ranges;
+}
+
+/// Whether a box, counted in cells, is one of the grid: so it may be meant, whatever the root is.
+bool is_within(const BoxText& box, const std::array<std::int32_t, 3>& grid) {
+  bool is = true;
+  for (std::size_t i = 0; i < 3; ++i) {
+    is = is && box.origin[i] >= 0 && box.size[i] > 0 && box.origin[i] + box.size[i] <= grid[i];
+  }
+  return is;
+}
+
+/// Outside <vs>: in mm, unless cells may be meant as well and make other modules.
+BoxRanges read_mm_ranges(XmlReading& reading, const pugi::xml_node& box, const BoxText& text,
+                         const std::array<std::int32_t, 3>& grid) {
+  const Lengths pitch = read_lengths(reading, box.parent(), "blockSize", kBlockSize);
+  if (reading.document.extension.lattice != base::kCubic) {
     reading.fail(box, "<blockBox> in mm is for cubes only: write its modules as <block>",
                  base::ErrorCode::kUnsupported);
-    return {};
-  }
-  if (!reading.grid()) {
-    reading.fail(box, "<blockBox> needs the attribute 'gridSize' of <world>, which is missing");
     return {};
   }
   if (std::ranges::min(pitch) <= 0) {
@@ -184,14 +219,47 @@ std::array<IndexRange, 3> read_box_ranges(XmlReading& reading, const pugi::xml_n
                                            pitch[0], pitch[1], pitch[2]));
     return {};
   }
-  const std::array<std::int32_t, 3> grid = {reading.grid()->x, reading.grid()->y,
-                                            reading.grid()->z};
-  std::array<IndexRange, 3> ranges;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double end = in_cells ? std::ceil(origin[i] + size[i]) - 1 : origin[i] + size[i];
-    ranges[i] = Box{origin[i], end, pitch[i]}.cells(grid[i]);
+  const BoxRanges ranges = ranges_in_mm(text, pitch, grid);
+  const BoxRanges counted = ranges_in_cells(text, grid);
+  if (is_within(text, grid) && counted.axes != ranges.axes) {
+    reading.fail(box,
+                 fmt::format("<blockBox> is {} modules in mm, as VisibleSim counts up to 2022, "
+                             "but {} in cells, as it counts since: put the file within <vs> "
+                             "to count cells, or write the modules as <block>",
+                             ranges.count(), counted.count()));
   }
   return ranges;
+}
+
+/// Within <vs>. The loops of VisibleSim end before the last layer of the grid.
+BoxRanges read_cell_ranges(XmlReading& reading, const pugi::xml_node& box, const BoxText& text,
+                           const std::array<std::int32_t, 3>& grid) {
+  const BoxRanges ranges = ranges_in_cells(text, grid);
+  std::size_t count_there = 1;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const IndexRange& axis = ranges.axes[i];
+    count_there *= axis.count() - (axis.count() > 0 && axis.last == grid[i] - 1 ? 1 : 0);
+  }
+  if (count_there != ranges.count()) {
+    reading.warn_at(box, fmt::format("a <blockBox> reaches the last layer of the grid, which "
+                                     "VisibleSim leaves out: {} modules here, {} there",
+                                     ranges.count(), count_there));
+  }
+  return ranges;
+}
+
+BoxRanges read_box_ranges(XmlReading& reading, const pugi::xml_node& box) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  const BoxText text = {read_lengths(reading, box, "boxOrigin", {0, 0, 0}),
+                        read_lengths(reading, box, "boxSize", {kFar, kFar, kFar})};
+  if (!reading.grid()) {
+    reading.fail(box, "<blockBox> needs the attribute 'gridSize' of <world>, which is missing");
+    return {};
+  }
+  const std::array<std::int32_t, 3> grid = {reading.grid()->x, reading.grid()->y,
+                                            reading.grid()->z};
+  return counts_in_cells(box) ? read_cell_ranges(reading, box, text, grid)
+                              : read_mm_ranges(reading, box, text, grid);
 }
 
 void read_box(XmlReading& reading, const pugi::xml_node& box) {
@@ -199,8 +267,9 @@ void read_box(XmlReading& reading, const pugi::xml_node& box) {
   reading.expect_attributes(box, kBoxAttributes);
   const std::optional<Color> color = reading.color(box);
   const Attributes orientation = read_orientation(box);
-  const auto [xs, ys, zs] = read_box_ranges(reading, box);
-  const std::size_t count = xs.count() * ys.count() * zs.count();
+  const BoxRanges ranges = read_box_ranges(reading, box);
+  const auto& [xs, ys, zs] = ranges.axes;
+  const std::size_t count = ranges.count();
   if (count == 0) {
     reading.warn_at(box, "a <blockBox> holds no cell");
   }

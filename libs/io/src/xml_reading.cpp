@@ -266,13 +266,8 @@ base::Cell XmlReading::cell(const pugi::xml_node& node) {
 
 std::optional<Color> XmlReading::color(const pugi::xml_node& node) {
   const pugi::xml_attribute attribute = node.attribute("color");
-  const std::optional<Color> color =
-      attribute ? parse_color(attribute.value()) : std::optional<Color>();
-  if (attribute && !color) {
-    fail(node, fmt::format("color of <{}> is {}, {}", node.name(), excerpt(attribute.value()),
-                           kColorsAllowed));
-  }
-  return color;
+  return attribute ? take_color(node.name(), attribute.value(), [&] { return line(node); })
+                   : std::nullopt;
 }
 
 void XmlReading::take_back_shift(const pugi::xml_node& own) {

@@ -5,8 +5,10 @@
 // down which modules a file is for; neighbours and places of its lattices are as in its
 // documentation: catoms3D have 4 neighbours above that lie half a cell aside, hexanodes 6 in the
 // plane, catoms2D 6 in the plane x-z.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
 #include "document_support.hpp"
@@ -165,8 +167,25 @@ TEST(VisibleSimLattice, has_colours_in_three_notations) {
   EXPECT_EQ(color("1, 2,3"), (Color{1, 2, 3}));
   EXPECT_EQ(color("#0a0B0c"), (Color{10, 11, 12}));
   EXPECT_EQ(color("0xffffff"), (Color{255, 255, 255}));
-  for (const char* bad : {"#fff", "#0a0b0cff", "#0a0b0g", "0x-00001", "256,0,0", ""}) {
-    refused(world("", "<block position=\"0,0,0\" color=\"" + std::string(bad) + "\"/>"));
+  // A colour decides nothing. VisibleSim exports fractions and takes their whole part.
+  EXPECT_EQ(color("127.5,127.5,127.5"), (Color{127, 127, 127}));
+  EXPECT_EQ(color("255,139.995,0"), (Color{255, 139, 0}));
+  EXPECT_EQ(color("256,-1,1e300"), (Color{255, 0, 255}));
+  for (const char* bad : {"#fff", "#0a0b0cff", "#0a0b0g", "0x-00001", "red", "1,2,nan", ""}) {
+    EXPECT_EQ(color(bad), std::nullopt) << bad;
+  }
+  for (const char* bad : {"127.5,127.5,127.5", "256,0,0", "red"}) {
+    const std::string attributes = " position=\"0,0,0\" color=\"" + std::string(bad) + "\"/>";
+    const ReadDocument read = accepted(read_visiblesim(world(
+        "", "<block" + attributes, "<obstacleList><obstacle" + attributes + "</obstacleList>")));
+    for (const char* element : {"block", "obstacle"}) {
+      const std::string note = fmt::format("color of <{}> is '{}'", element, bad);
+      EXPECT_EQ(
+          std::ranges::count_if(
+              read.warnings, [&](const std::string& warning) { return contains(warning, note); }),
+          1)
+          << note;
+    }
   }
 }
 
@@ -247,7 +266,6 @@ TEST(VisibleSimObstacles, say_what_is_wrong) {
   bad("<obstacle/>", "has no attribute 'position'");
   bad("<obstacle position=\"1,2\"/>", "position of <obstacle> is '1,2'");
   bad("<obstacle position=\"1,2,9999999\"/>", "from -1000000 to 1000000");
-  bad("<obstacle position=\"1,2,3\" color=\"red\"/>", "color of <obstacle> is 'red'");
   bad("<obstacle position=\"1,2,3\" hold=\"glued\"/>", "allowed are contact and bonded");
   bad("<obstacle position=\"1,2,3\" friction=\"-1\"/>", "not negative");
   bad("<obstacle position=\"1,2,3\" to=\"1,2,2\"/>", "may be below");
