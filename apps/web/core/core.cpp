@@ -133,9 +133,12 @@ Json stability_json(const model::Robot& robot, const verdict::Assessment& assess
   auto centre = centre_of_mass(robot);
   centre[0] = body.centre_of_mass.x;
   centre[1] = body.centre_of_mass.y;
-  return {{"rule", name(assessment.stability_rule)},    {"stable", assessment.is_stable},
-          {"margin_mm", optional_json(body.margin_mm)}, {"edge", edge},
-          {"centre_of_mass", vector_json(centre)},      {"polygon", polygon},
+  return {{"rule", name(assessment.stability_rule)},
+          {"stable", optional_json(verdict::known_stability(assessment))},
+          {"margin_mm", optional_json(body.margin_mm)},
+          {"edge", edge},
+          {"centre_of_mass", vector_json(centre)},
+          {"polygon", polygon},
           {"rigid", rigid_json(assessment.rigid)}};
 }
 

@@ -39,7 +39,9 @@ Json material_json() {
     list.push_back({{"key", parameter.key},
                     {"label", parameter.label},
                     {"unit", parameter.unit},
-                    {"table_i", model::Material{}.*parameter.value}});
+                    {"table_i", model::Material{}.*parameter.value},
+                    {"lowest", parameter.lowest},
+                    {"highest", parameter.highest}});
   }
   return list;
 }

@@ -8,8 +8,8 @@ import { Workbench, type Tool } from './model/workbench';
 import type { ScaleName } from './view/colours';
 import { App } from './ui/app';
 import { showFaceLegend, showLegend } from './ui/answer_panel';
-import { byId, icon, make, say } from './ui/dom';
-import { listenToFiles, reportOf, take } from './ui/files';
+import { byId, icon, make, say, tell } from './ui/dom';
+import { listenToFiles, reportOf, take, write } from './ui/files';
 import { Collapse } from './ui/collapse';
 import { openGallery } from './ui/gallery';
 import { Keeper } from './ui/keeper';
@@ -23,7 +23,7 @@ import { Timeline } from './ui/timeline';
 
 declare global {
   /** A handle for the browser's console, and for the tests. */
-  var holdfast: { bench: Workbench; app: App; player: Player; timeline: Timeline; reportOf: typeof reportOf };
+  var holdfast: { bench: Workbench; app: App; player: Player; timeline: Timeline; reportOf: typeof reportOf; write: typeof write };
 }
 
 const TOOLS: readonly [tool: Tool, text: string, key: string][] = [
@@ -136,7 +136,7 @@ function makePanel(app: App, keeper: Keeper): void {
   const slider = byId<HTMLInputElement>('exaggeration');
   slider.oninput = () => {
     const factor = app.setExaggeration(Number(slider.value) / 100);
-    byId('exaggeration-value').textContent = `${factor < 10 ? factor.toFixed(1) : factor.toFixed(0)} ×`;
+    byId('exaggeration-value').textContent = `${factor === 0 || factor >= 10 ? factor.toFixed(0) : factor.toFixed(1)} ×`;
   };
   byId('topple').onclick = () => app.startTopple();
   byId('stop').onclick = () => app.stop();
@@ -169,6 +169,7 @@ function makePanel(app: App, keeper: Keeper): void {
 const showTitle = ({ robot }: Workbench) => (document.title = robot.name ? `${robot.name} - holdfast` : 'holdfast');
 
 function makeActions(app: App, player: Player, timeline: Timeline): Record<string, () => void> {
+  const { bench } = app;
   const turn = (angle: number) => {
     const { camera, controls } = app.stage;
     camera.position.sub(controls.target).applyAxisAngle(camera.up, angle).add(controls.target);
@@ -182,9 +183,9 @@ function makeActions(app: App, player: Player, timeline: Timeline): Record<strin
   const tellDone = (label: string | undefined, word: string) =>
     say(label ? `${word}: ${label}` : 'nothing to undo');
   return {
-    undo: () => tellDone(app.bench.history.undo(), 'undone'),
-    redo: () => tellDone(app.bench.history.redo(), 'done again'),
-    f: () => byId('faces').click(),
+    undo: () => tellDone(bench.history.undo(), 'undone'),
+    redo: () => tellDone(bench.history.redo(), 'done again'),
+    f: () => bench.refusesNow() || byId('faces').click(),
     h: () => app.see(),
     t: () => app.startTopple(),
     q: () => turn(-Math.PI / 12),
@@ -203,11 +204,11 @@ function makeActions(app: App, player: Player, timeline: Timeline): Record<strin
 }
 
 function begin(): void {
-  const bench = new Workbench(say);
+  const bench = new Workbench(tell);
   const app = new App(bench);
   const player = new Player(app);
   const timeline = new Timeline(app);
-  globalThis.holdfast = { bench, app, player, timeline, reportOf };
+  globalThis.holdfast = { bench, app, player, timeline, reportOf, write };
   const keeper = new Keeper(bench);
   makeTools(bench);
   makeDialogs();

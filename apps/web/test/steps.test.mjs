@@ -9,7 +9,7 @@ import { createRequire } from 'node:module';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
 import {
-  clickFace, count, dropFile, launch, message, openExample, openPage, program, repository, settled, temporaryFolder, verdict,
+  clickFace, count, dropFile, facePoint, launch, message, openExample, openPage, program, repository, settled, temporaryFolder, verdict,
 } from './browser.mjs';
 
 let browser;
@@ -209,10 +209,9 @@ test('no colours of the computation or of a collapse outlive the robot they were
       return view.hasOwnColours || shown.some((value, i) => value !== view.modules.tints[i]);
     });
   const changes = [
-    () => globalThis.holdfast.bench.edit('more', [[0, 0, 3]], 0),
+    () => globalThis.holdfast.bench.use([globalThis.holdfast.bench.robot.freePlaces()[0]]),
     () => globalThis.holdfast.bench.history.undo(),
     () => globalThis.holdfast.bench.surround('the floor', { support_z: null }),
-    () => globalThis.holdfast.bench.surround('the floor', { support_z: undefined }),
   ];
   for (const change of changes) {
     await page.click('#simulate');
@@ -221,7 +220,9 @@ test('no colours of the computation or of a collapse outlive the robot they were
     await settled(page);
     assert.equal(await stale(), false, String(change));
   }
-  // A collapse leaves the player's colours as they were.
+  // A collapse leaves the player's colours as they were; without a floor there was nothing to compute.
+  await page.click('#undo');
+  await settled(page);
   await page.click('#simulate');
   await page.waitForFunction(() => globalThis.holdfast.player.trace && globalThis.holdfast.app.view.paintOver);
   const kept = await page.evaluate(() => {
@@ -297,4 +298,77 @@ test('axe finds nothing to object to where steps are shown, and keys do all', as
     assert.deepEqual(violations.map(({ id, nodes }) => [id, nodes[0].html]), []);
     assert.deepEqual(page.faults, []);
   }
+});
+
+test('all stages are in the picture from the first on, whatever grows', async () => {
+  const page = await openPage(browser);
+  // From one module, which the camera is near to, a tower and an arm far out.
+  const cells = [...Array.from({ length: 9 }, (_, i) => [0, 0, i + 1]), ...row(1, 9, 0, 9)];
+  await openSteps(page, file('grown', { modules: [[0, 0, 0]], steps: cells.map((cell) => ({ attach: [cell] })) }));
+  const stages = Number(await page.getAttribute('#stage-slider', 'max')) + 1;
+  const outside = () =>
+    page.evaluate(() => {
+      const { app: { stage, robot } } = globalThis.holdfast;
+      const { clientWidth, clientHeight } = stage.canvas;
+      const places = Array.from({ length: robot.count }, (_, slot) => stage.controls.target.clone().fromArray(robot.placeAt(slot)));
+      stage.camera.updateMatrixWorld();
+      return places.map((place) => stage.project(place)).filter((at) => !at || at.x < 0 || at.y < 0 || at.x > clientWidth || at.y > clientHeight).length;
+    });
+  for (let at = 0; at < stages; ++at) {
+    await page.fill('#stage-slider', String(at));
+    assert.equal(await outside(), 0, `stage ${at}`);
+  }
+  await page.fill('#stage-slider', '0');
+  await page.click('#fit');
+  await page.fill('#stage-slider', String(stages - 1));
+  assert.equal(await outside(), 0, '“See all” sees them all too');
+  assert.deepEqual(page.faults, []);
+});
+
+test('beside a stage nothing answers about the robot that is built, and a click says why nothing is done', async () => {
+  const page = await openPage(browser);
+  await openSteps(page, LONG_BEAM);
+  await page.click('#simulate');
+  await page.waitForFunction(() => globalThis.holdfast.player.trace);
+  await page.click('#faces');
+  await page.click('#first-unsafe');
+  await page.waitForFunction(() => globalThis.holdfast.timeline.loads);
+  const state = () =>
+    page.evaluate(() => {
+      const { app, player } = globalThis.holdfast;
+      const off = ['find-limit', 'simulate', 'exaggeration', 'faces'].filter((id) => document.getElementById(id).closest('[inert]'));
+      const faces = [...app.view.modules.faces.slice(0, 2 * app.view.drawn.length)].some((code) => code > 0);
+      return { off: off.length, trace: player.trace !== undefined, own: app.view.hasOwnColours, faces };
+    });
+  assert.deepEqual(await state(), { off: 4, trace: false, own: false, faces: false });
+  const before = await count(page);
+  for (const key of ['f', 'k', ']']) {
+    await page.keyboard.press(key);
+  }
+  assert.equal((await state()).trace, false);
+  await page.click('#tools button[aria-label=Attach]');
+  const { x, y } = await facePoint(page, [2, 0, 2], [0, -1, 0]);
+  await page.mouse.click(x, y);
+  assert.match(await message(page), /A stage of the steps is shown: “Back to building” ends that/);
+  assert.equal(await count(page), before);
+  await page.click('#build-on');
+  assert.deepEqual(await state(), { off: 0, trace: false, own: false, faces: true });
+  assert.deepEqual(page.faults, []);
+});
+
+test('steps that are played keep their colours from stage to stage', async () => {
+  const page = await openPage(browser, { reducedMotion: 'no-preference' });
+  await openSteps(page, WALK);
+  await page.evaluate(() => {
+    const { app } = globalThis.holdfast;
+    globalThis.frames = [];
+    app.stage.followers.push(() => app.isExhibiting && globalThis.frames.push(app.shown.answer.has_loads));
+  });
+  await page.click('#stages-play');
+  await page.waitForFunction(() => globalThis.holdfast.timeline.at === 17 && !globalThis.holdfast.timeline.isPlaying);
+  const frames = await page.evaluate(() => globalThis.frames);
+  const first = frames.indexOf(true);
+  assert.ok(first >= 0 && frames.length > 20, `${first} of ${frames.length} frames`);
+  assert.equal(frames.slice(first).filter((hasLoads) => !hasLoads).length, 0, 'grey frames');
+  assert.deepEqual(page.faults, []);
 });

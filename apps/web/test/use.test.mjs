@@ -230,7 +230,7 @@ test('what cannot be done was never done: no step, no cell', async () => {
   const before = await state();
   assert.deepEqual([before.canUndo, before.canRedo], [false, true]);
   await page.evaluate(() => globalThis.holdfast.bench.edit('a row', [[7, 1, 2], [8, 1, 2], [900_000, 1, 2]], 0));
-  assert.match(await page.textContent('#spoken'), /100000 cells/);
+  assert.match(await page.textContent('#messages'), /100000 cells/);
   assert.deepEqual(await state(), before);
   assert.deepEqual(page.faults, []);
 });

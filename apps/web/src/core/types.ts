@@ -31,7 +31,8 @@ export interface RigidAnswer {
 export interface Stability {
   /** What decides. */
   rule: 'held' | 'polygon' | 'contact-forces';
-  stable: boolean;
+  /** Null: it is not certain. */
+  stable: boolean | null;
   margin_mm: number | null;
   edge: [Point, Point] | null;
   centre_of_mass: Point3;
@@ -90,8 +91,8 @@ export interface Choice {
 
 /** What the page learns from the core instead of repeating it; asked when the page is built. */
 export interface Vocabulary {
-  /** The numbers that mechanics depend on; `table_i` is that of Table I of [Piranda 2021]. */
-  material: { key: string; label: string; unit: string; table_i: number }[];
+  /** The numbers that mechanics depend on and what they may be; `table_i` is that of Table I of [Piranda 2021]. */
+  material: { key: string; label: string; unit: string; table_i: number; lowest: number; highest: number }[];
   /** Of the robot's own computation, in their order. */
   phases: string[];
   methods: Choice[];

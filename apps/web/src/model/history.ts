@@ -12,6 +12,8 @@ type Step = { label: string } & (
 
 export type Change = Step['what'];
 
+const isSame = (a: unknown, b: unknown) => a === b || JSON.stringify(a) === JSON.stringify(b);
+
 /** The robot on the page and everything that was done to it. Tells its listener of every change. */
 export class History {
   private done: Step[] = [];
@@ -38,7 +40,7 @@ export class History {
     if (role === undefined && changes.length > 0) {
       after.surroundings = withoutModules(after.surroundings, changes.map(({ cell }) => cell));
     }
-    const isOther = (Object.keys(before) as (keyof Settings)[]).some((key) => before[key] !== after[key]);
+    const isOther = (Object.keys(before) as (keyof Settings)[]).some((key) => !isSame(before[key], after[key]));
     if (changes.length > 0 || isOther) {
       this.do({ label, what: changes.length > 0 ? 'cells' : 'settings', changes, before, after });
     }

@@ -16,5 +16,6 @@ export const pitchMm = (material: Float64Array) => material[PITCH];
 export const gravityMagnitude = (material: Float64Array) => material[GRAVITY];
 export const withGravity = (material: Float64Array, magnitude: number) =>
   material.map((old, k) => (k === GRAVITY ? magnitude : old));
+export const GRAVITY_RANGE = PARAMETERS[GRAVITY];
 /** Gravity has a form of its own, for its direction too. */
 export const isGravity = (parameter: number) => parameter === GRAVITY;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 import { Role, plus, type Cell } from './cell';
-import { EditedRobot } from './edited_robot';
+import { EditedRobot, widen, type Box } from './edited_robot';
 import type { Place } from './lattice';
 
 /** What the steps of a sequence do, and the robot at any moment of it. */
@@ -96,6 +96,21 @@ export class Sequence {
   /** Of the longest way of a step; 0 if nothing moves. */
   waypointCount(step: number): number {
     return Math.max(0, ...this.transitions[step].groups.map(({ way }) => way.length));
+  }
+
+  /** Of all modules in all stages, those on their way too. */
+  bounds(): Box | undefined {
+    const { lattice } = this.start;
+    const ways = ({ from, way }: Group) =>
+      way.flatMap((offset) => from.map((cell) => plus(lattice.axial(cell), offset.map((twice) => twice / 2) as unknown as Cell)));
+    const places = this.transitions.flatMap(({ attach, groups }) => [
+      ...[...attach, ...groups.flatMap(({ to }) => to)].map((cell) => lattice.place(cell)),
+      ...groups.flatMap(ways).map((place) => lattice.placeOfAxial(place)),
+    ]);
+    const begin = this.start.withoutPlanned().bounds();
+    const box = begin ?? (places[0] && { low: [...places[0]], high: [...places[0]] });
+    places.forEach((place) => widen(box as Box, place));
+    return box as Box | undefined;
   }
 
   /** In a stage of a step; `waypoint` counts in the shift alone. */

@@ -233,6 +233,9 @@ const rounded = (value: number) => Number(value.toPrecision(12)) + 0;
 export const isStraightDown = ([x, y, z]: Vector) => x === 0 && y === 0 && z < 0;
 
 export function gravityOf({ angle, downhill, strength }: Slope): Vector {
+  if (angle === 0) {
+    return [0, 0, -strength];
+  }
   const level = strength * Math.sin(angle * DEGREE);
   const parts = [level * Math.cos(downhill * DEGREE), level * Math.sin(downhill * DEGREE), -strength * Math.cos(angle * DEGREE)];
   return parts.map((value) => (Math.abs(value) < 1e-12 * strength ? 0 : rounded(value))) as unknown as Vector;
@@ -243,8 +246,7 @@ export function slopeOf([x, y, z]: Vector): Slope {
   return {
     angle: rounded(Math.atan2(level, -z) / DEGREE),
     downhill: level === 0 ? 0 : rounded(Math.atan2(y, x) / DEGREE),
-    // One digit less than the parts have: turned to and fro it stays what it was.
-    strength: Number(Math.hypot(level, z).toPrecision(11)),
+    strength: Math.hypot(level, z),
   };
 }
 

@@ -86,10 +86,17 @@ export class Workbench {
     }
   }
 
-  /** Uses the tool on cells. */
-  use(cells: readonly Cell[]): void {
+  /** Says why nothing can be done with what is built now, if that is so. */
+  refusesNow(): boolean {
     if (this.closed !== '') {
       this.refuse(this.closed);
+    }
+    return this.closed !== '';
+  }
+
+  /** Uses the tool on cells. */
+  use(cells: readonly Cell[]): void {
+    if (cells.length === 0 || this.refusesNow()) {
       return;
     }
     const role = ROLE_NAMES[this.role];
@@ -109,8 +116,7 @@ export class Workbench {
 
   /** Modules and obstacles. */
   remove(cells: readonly Cell[]): void {
-    if (this.closed !== '') {
-      this.refuse(this.closed);
+    if (this.refusesNow()) {
       return;
     }
     const { surroundings, obstacles } = this.robot;

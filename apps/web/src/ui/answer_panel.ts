@@ -19,7 +19,19 @@ const WORDS = {
   undecided: ['Undecided', 'not certain'],
 } as const;
 
-export const formatRatio = (ratio: number) => ratio.toFixed(Math.abs(ratio) < 0.0005 ? 1 : 3);
+/** Below this a number is rounding. */
+const NOTHING = 1e-9;
+
+/** With a number of decimals, and at least two digits that say something. */
+export function numberText(value: number, decimals = 2): string {
+  if (Math.abs(value) < NOTHING) {
+    return '0';
+  }
+  return Math.abs(value) < 10 ** (1 - decimals) ? String(Number(value.toPrecision(2))) : value.toFixed(decimals);
+}
+
+/** A share of a connection's strength; where it is pressed together, none is used. */
+export const formatRatio = (ratio: number) => (ratio < NOTHING ? 'nothing pulls' : numberText(ratio, 3));
 
 /** "(2,1,2)-(3,1,2)" */
 export function connectionText(robot: EditedRobot, finding: Finding, index: number): string {
@@ -69,7 +81,7 @@ function reason(robot: EditedRobot, finding: Finding | undefined): string {
       rule === 'contact-forces'
         ? ['Contact forces can hold it.', 'No contact forces balance the loads, or nothing is to spare.']
         : ['The centre of mass is above the support polygon.', 'The centre of mass is not above the support polygon.'];
-    return stable ? yes : no;
+    return stable === null ? 'Whether it stays is not certain yet.' : stable ? yes : no;
   }
   const sentences = finding?.answer?.reasons.map((text) => `${text[0].toUpperCase()}${text.slice(1)}.`);
   return finding?.problem ?? sentences?.join(' ') ?? '';
@@ -89,7 +101,7 @@ function figures(robot: EditedRobot, finding: Finding | undefined, answer: Answe
     list.push(['Largest load', formatRatio(answer.load_ratio_max) + at, 'share of the strength']);
   }
   if (answer?.weight_factor != null && answer.verdict !== 'unstable') {
-    const text = `${answer.weight_factor.toFixed(2)} times this weight`;
+    const text = `${numberText(answer.weight_factor)} times this weight`;
     list.push(['First break at', text]);
   }
   if (answer) {
@@ -110,16 +122,16 @@ function stabilityFigures(robot: EditedRobot, { stability }: Answer): Figure[] {
   const list: Figure[] = [];
   if (rule !== 'contact-forces') {
     const held = robot.obstacles.obstacles.some((one) => holdOf(one) === 'bonded') ? 'held fast' : 'held by a fixed module';
-    const text = margin === null ? held : `${margin.toFixed(2)} mm`;
+    const text = margin === null ? held : `${numberText(margin)} mm`;
     list.push(['Margin', text, 'from the centre of mass to the nearest edge of the support polygon']);
   } else {
     list.push(['Rigid body', rigid.answer, 'whether contact forces can hold it as one rigid body']);
   }
   if (rigid.tilt_margin_deg !== null && !robot.isPlain) {
-    list.push(['Tilt to spare', `${rigid.tilt_margin_deg.toFixed(2)}°`, 'by which gravity may turn, in any direction']);
+    list.push(['Tilt to spare', `${numberText(rigid.tilt_margin_deg)}°`, 'by which gravity may turn, in any direction']);
   }
   if (rigid.friction_needed !== null && rule === 'contact-forces') {
-    list.push(['Friction needed', rigid.friction_needed.toFixed(3), 'of a rigid body, at the best pressing; the elastic forces may take more']);
+    list.push(['Friction needed', numberText(rigid.friction_needed, 3), 'of a rigid body, at the best pressing; the elastic forces may take more']);
   }
   return list;
 }
@@ -222,7 +234,7 @@ export function showDetails(
         'tr',
         {},
         make('th', { scope: 'row' }, robot.lattice.sides[row.side]),
-        ...[formatRatio(row.ratio) + row.limit, `${row.axial.toFixed(2)} N`, `${row.bending.toFixed(0)} N mm`].map((t) => make('td', {}, t)),
+        ...[formatRatio(row.ratio) + row.limit, `${numberText(row.axial)} N`, `${numberText(row.bending, 0)} N mm`].map((t) => make('td', {}, t)),
       );
       line.className = row.side === side ? 'pointed' : row.isBroken ? 'breaks' : '';
       body.append(line);
@@ -272,7 +284,7 @@ function facetTexts(robot: EditedRobot, finding: Finding | undefined, slot: numb
   return (facetsOf(finding, answer).get(slot) ?? []).map((i) => {
     const { direction, state, push, slide } = facetAt(answer, i);
     const isIdle = state === FacetState.kUnknown || state === FacetState.kOpen;
-    const force = isIdle ? '' : push < 0 ? `, pulled with ${(-push).toFixed(2)} N` : `, pressed with ${push.toFixed(2)} N`;
+    const force = isIdle ? '' : push < 0 ? `, pulled with ${numberText(-push)} N` : `, pressed with ${numberText(push)} N`;
     const friction = slide === undefined ? '' : `, ${(100 * slide).toFixed(0)} % of its friction`;
     return `facet ${robot.lattice.sides[direction]} ${FACET_LOOKS[state].text}${force}${friction}`;
   });

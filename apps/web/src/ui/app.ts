@@ -3,8 +3,9 @@
 import { Judge, type Finding } from '../core/judge';
 import { MOTION_FIELDS } from '../core/types';
 import { equal, type Cell } from '../model/cell';
-import type { EditedRobot } from '../model/edited_robot';
+import { widen, type Box, type EditedRobot } from '../model/edited_robot';
 import type { Change } from '../model/history';
+import type { Place } from '../model/lattice';
 import type { Workbench } from '../model/workbench';
 import type { ScaleName } from '../view/colours';
 import { FacetView } from '../view/facets';
@@ -35,6 +36,24 @@ function coveredByTools(): number {
 export interface Exhibit {
   robot: EditedRobot;
   finding: Finding;
+  /** Of all moments of the sequence. */
+  bounds?: Readonly<Box>;
+}
+
+/** Of modules, and of obstacles as far from them as they are large; further ones would hide the robot. */
+function boundsOf(robot: EditedRobot): Box | undefined {
+  const own = robot.bounds();
+  if (!own) {
+    return undefined;
+  }
+  const reach = Math.max(4, ...own.high.map((high, k) => high - own.low[k]));
+  const box: Box = { low: [...own.low], high: [...own.high] };
+  const near = (place: Place) =>
+    place.map((value, k) => Math.min(Math.max(value, own.low[k] - reach), own.high[k] + reach)) as unknown as Place;
+  for (const { from, to, cells } of robot.obstacles.obstacles) {
+    (cells ?? [from!, to!]).forEach((cell) => widen(box, near(robot.lattice.place(cell))));
+  }
+  return box;
 }
 
 /** The picture of what is on the workbench, and the answer to it. */
@@ -45,6 +64,8 @@ export class App {
   /** Of the robot that is built. */
   finding?: Finding;
   private exhibit?: Exhibit;
+  /** Called before something else is shown than the robot that is built. */
+  readonly exhibitListeners: (() => void)[] = [];
   private readonly ground = new Ground();
   private readonly obstacles = new ObstacleView();
   private readonly facets = new FacetView();
@@ -80,20 +101,35 @@ export class App {
   setExhibit(exhibit: Exhibit | undefined): void {
     if (exhibit || this.exhibit) {
       this.toppling.stop();
+      const isFirst = !this.exhibit;
+      if (isFirst) {
+        this.exhibitListeners.forEach((tell) => tell());
+        this.straighten();
+      }
       this.exhibit = exhibit;
+      this.offer();
       this.view.point([]);
       this.whereNext.preview([]);
       byId('topple').hidden = exhibit !== undefined || !this.canTopple;
       this.showRobot();
       this.showPointed();
+      if (isFirst && exhibit?.bounds && !this.stage.holds(exhibit.bounds.low, exhibit.bounds.high)) {
+        this.see(true);
+      }
     }
+  }
+
+  /** What is about the robot that is built is off while another one is shown. */
+  private offer(): void {
+    this.whereNext.isOff = this.isExhibiting;
+    document.querySelectorAll<HTMLElement>('[data-built]').forEach((part) => (part.inert = this.isExhibiting));
   }
 
   /** Another moment of what is shown, its modules in the same slots: only the picture changes. */
   moveExhibit(robot: EditedRobot): void {
     if (this.exhibit) {
       const { finding } = this.exhibit;
-      this.exhibit = { robot, finding };
+      this.exhibit = { ...this.exhibit, robot };
       this.view.show(robot, finding.answer && { answer: finding.answer, slots: finding.slots });
     }
   }
@@ -111,7 +147,8 @@ export class App {
   }
 
   see(keepsSide = false): void {
-    const { low, high } = this.robot.bounds() ?? { low: [-2, -2, 0], high: [2, 2, 1] };
+    const box = this.exhibit?.bounds ?? boundsOf(this.robot);
+    const { low, high } = box ?? { low: [-2, -2, 0], high: [2, 2, 1] };
     this.stage.fit(low, high, keepsSide);
   }
 
@@ -154,9 +191,11 @@ export class App {
     }
   }
 
-  /** Upright again. */
-  stopTopple(): void {
+  /** Upright again; false if it was. */
+  stopTopple(): boolean {
+    const { isRunning } = this.toppling;
     this.toppling.stop();
+    return isRunning;
   }
 
   /** Everything is drawn anew for a changed robot. */
@@ -164,6 +203,7 @@ export class App {
     const { robot, history } = this.bench;
     this.toppling.stop();
     this.exhibit = undefined;
+    this.offer();
     // Colours of the robot as it was are not this one's, however soon its answer comes.
     this.view.paintOver = undefined;
     this.view.point([]);

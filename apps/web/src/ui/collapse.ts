@@ -25,6 +25,7 @@ export class Collapse {
     byId('collapse').onclick = () => this.start();
     app.stage.motions.push((now) => this.move(now));
     app.bench.robotListeners.push(() => this.forget());
+    app.exhibitListeners.push(() => this.stop());
   }
 
   show(limit: LimitLoad | null): void {
@@ -56,8 +57,8 @@ export class Collapse {
   }
 
   start(): void {
-    const { finding, view, stage } = this.app;
-    if (!finding || this.running || !this.shown) {
+    const { finding, view, stage, bench } = this.app;
+    if (!finding || this.running || !this.shown || bench.refusesNow()) {
       return;
     }
     const { robot, limit } = this.shown;

@@ -40,6 +40,8 @@ export async function openText(
   name: string,
   origin = name,
 ): Promise<boolean> {
+  // What is said of the file is not said behind a dialog.
+  document.querySelectorAll('dialog[open]').forEach((dialog) => (dialog as HTMLDialogElement).close());
   let note: HTMLElement | undefined;
   const late = setTimeout(() => (note = tell(`reading ${origin} …`, false, Infinity)), LATE_MS);
   try {
@@ -109,7 +111,7 @@ export function listenToFiles(bench: Workbench): void {
   window.addEventListener('hashchange', () => openFragment(bench).catch(() => tell(BROKEN_LINK, true)));
 }
 
-function write(bench: Workbench, output: Output): Promise<string> {
+export function write(bench: Workbench, output: Output): Promise<string> {
   const { robot } = bench;
   return client.write(robot.toData(true).data, output, robot.name, robot.base);
 }

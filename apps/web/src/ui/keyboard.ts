@@ -138,6 +138,9 @@ function letter(bench: Workbench, actions: Record<string, () => void>, key: stri
     return true;
   }
   if (key === '[' || key === ']') {
+    if (bench.refusesNow()) {
+      return true;
+    }
     const slider = byId<HTMLInputElement>('exaggeration');
     slider.value = String(Number(slider.value) + (key === ']' ? 10 : -10));
     slider.dispatchEvent(new Event('input'));

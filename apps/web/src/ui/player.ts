@@ -8,6 +8,7 @@ import { UNKNOWN, UNSTABLE, css, loadColour, brokenColour, mix, type Rgb } from 
 import { Packets } from '../view/packets';
 import { moduleLoads, type ModuleLoads } from '../view/robot_view';
 import type { App } from './app';
+import { formatRatio } from './answer_panel';
 import { byId, icon, make, say, tell, type IconName } from './dom';
 
 /** Plays what the modules tell each other until every one of them knows the verdict. */
@@ -62,6 +63,7 @@ export class Player {
     app.stage.scene.add(this.packets.points);
     app.stage.motions.push((now) => this.animate(now));
     app.bench.robotListeners.push(() => this.close());
+    app.exhibitListeners.push(() => this.close());
     byId('simulate').onclick = () => void this.run();
     this.button('phase-back', 'phaseBack', () => this.jump(this.phaseStops, -1));
     this.button('step-back', 'stepBack', () => this.jump(this.stops, -1));
@@ -86,7 +88,7 @@ export class Player {
     byId('packet-legend').append(...legend);
   }
 
-  /** The robot has changed: what was played is not its own any more. */
+  /** The robot has changed, or another one is shown: what was played is not its own. */
   close(): void {
     this.client.cancel();
     this.pause();
@@ -113,6 +115,9 @@ export class Player {
 
   private async run(): Promise<void> {
     const { app } = this;
+    if (app.bench.refusesNow()) {
+      return;
+    }
     if (this.client.isBusy) {
       this.close();
       return;
@@ -177,7 +182,7 @@ export class Player {
   }
 
   private result(trace: Trace): string {
-    const ratio = trace.load_ratio_max === null ? '' : `, load ratio ${trace.load_ratio_max.toFixed(3)}`;
+    const ratio = trace.load_ratio_max === null ? '' : `, load ratio ${formatRatio(trace.load_ratio_max)}`;
     const time = trace.simulated_s === null ? '' : `${trace.simulated_s.toFixed(2)} s, `;
     const agree = trace.all_modules_agree ? 'all modules agree' : 'not all modules agree';
     const cut = trace.is_complete ? '' : ' Only the first million events are played.';

@@ -33,11 +33,12 @@ export function listenToPointer(app: App): void {
   canvas.addEventListener(
     'pointerdown',
     (event) => {
-      app.stopTopple();
+      const wasFalling = app.stopTopple();
       if (app.bench.cursor) {
         app.moveCursor(undefined);
       }
-      if (gesture || event.button !== 0) {
+      // A click that stops the fall is meant for nothing else.
+      if (gesture || event.button !== 0 || wasFalling) {
         clearTimeout(gesture?.timer);
         gesture = undefined;
         controls.enabled = true;
@@ -126,7 +127,7 @@ function hover(app: App, x: number, y: number): void {
   const isThere = hit !== undefined && hit.what !== 'ground';
   app.point(isThere ? hit.cell : undefined, isModule ? nearSeam(app.robot, hit) : undefined);
   app.stage.canvas.style.cursor = isThere && app.bench.tool !== 'look' && !app.isExhibiting ? 'pointer' : 'grab';
-  preview(app, isBent(app) ? [] : cellsOf(app, hit));
+  preview(app, isBent(app) || app.isExhibiting ? [] : cellsOf(app, hit));
 }
 
 /** Ghosts of what would be placed, by the tools that place something. */
@@ -138,8 +139,11 @@ function preview(app: App, cells: readonly Cell[]): void {
 /** What a click there would change. */
 function cellsOf(app: App, hit: Hit | undefined): Cell[] {
   const { robot, tool } = app.bench;
-  if (!hit || tool === 'look' || app.isExhibiting) {
+  if (!hit || tool === 'look') {
     return [];
+  }
+  if (app.isExhibiting) {
+    return [hit.cell]; // To be refused, in words.
   }
   if (tool !== 'add' && tool !== 'obstacle') {
     const isMeant = hit.what === 'module' || (hit.what === 'obstacle' && tool === 'remove');

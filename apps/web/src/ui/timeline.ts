@@ -3,12 +3,12 @@
 import { CoreClient, Cancelled } from '../core/client';
 import type { JudgedSteps, StageLoads, StageReport } from '../core/types';
 import { Role } from '../model/cell';
-import type { EditedRobot } from '../model/edited_robot';
+import type { Box, EditedRobot } from '../model/edited_robot';
 import type { Change } from '../model/history';
 import { Recorder } from '../model/recorder';
 import { STAGES, Sequence, type StageRobot } from '../model/sequence';
 import type { App } from './app';
-import { formatRatio } from './answer_panel';
+import { formatRatio, numberText } from './answer_panel';
 import { drawBands } from './bands';
 import { byId, counted, icon, say, tell, type IconName } from './dom';
 import { openText, take } from './files';
@@ -22,6 +22,9 @@ const WHOLE_MS = 60_000;
 /** A changed robot is judged anew when nothing has changed for so long. */
 const DELAY_MS = 300;
 
+/** The loads of so many stages are kept. */
+const STAGES_KNOWN = 8;
+
 /** An order is sought for so long. */
 const ORDER_SECONDS = 10;
 
@@ -29,10 +32,13 @@ export class Timeline {
   private readonly client = new CoreClient();
   private judged?: JudgedSteps;
   private sequence?: Sequence;
+  private bounds?: Box;
   private recorder?: Recorder;
   /** Which stage of which step is shown: three for each step; undefined: what is built. */
   private at?: number;
   private loads?: StageLoads;
+  /** Of the stages around, which are played next; by stage. */
+  private readonly known = new Map<number, StageLoads>();
   private isPlaying = false;
   /** When the stage that is played has begun. */
   private begun = 0;
@@ -149,6 +155,7 @@ export class Timeline {
     this.isToPlay = false;
     byId<HTMLButtonElement>('order').disabled = false;
     this.judged = this.sequence = this.at = this.loads = undefined;
+    this.known.clear();
     this.app.bench.closed = '';
     byId('sequence').hidden = true;
     byId('build-on').hidden = true;
@@ -170,6 +177,7 @@ export class Timeline {
   private open(robot: EditedRobot, judged: JudgedSteps): void {
     this.judged = judged;
     this.sequence = new Sequence(robot, judged.transitions);
+    this.bounds = this.sequence.bounds();
     byId('sequence').hidden = this.stageCount === 0;
     byId<HTMLInputElement>('stage-slider').max = String(this.stageCount - 1);
     byId('first-unsafe').hidden = judged.report.first_unsafe === null;
@@ -249,13 +257,15 @@ export class Timeline {
     }
     this.at = at;
     this.begun = performance.now();
-    this.loads = undefined;
-    this.app.bench.closed = 'a stage of the steps is shown: “Back to building” ends that';
+    this.loads = this.known.get(at);
+    this.app.bench.closed = 'A stage of the steps is shown: “Back to building” ends that.';
     this.exhibit(this.isMoving ? 0 : (this.report!.waypoint ?? 0));
     this.showPlace();
-    // A core that is behind is asked again where the playing ends.
-    if (!this.isPlaying || !this.client.isBusy) {
+    if (!this.loads) {
       void this.findLoads(at);
+    }
+    if (this.isPlaying && at + 1 < this.stageCount) {
+      void this.findLoads(at + 1);
     }
   }
 
@@ -269,7 +279,11 @@ export class Timeline {
 
   /** Of the stage that is shown. */
   private get report(): StageReport | undefined {
-    return this.at === undefined ? undefined : this.judged?.report.steps[this.stepIndex].stages[STAGES[this.stage]];
+    return this.at === undefined ? undefined : this.reportAt(this.at);
+  }
+
+  private reportAt(at: number): StageReport | undefined {
+    return this.judged?.report.steps[Math.floor(at / STAGES.length)].stages[STAGES[at % STAGES.length]];
   }
 
   /** Modules are seen on their way, unless the user wants no motion. */
@@ -284,13 +298,24 @@ export class Timeline {
 
   private exhibit(waypoint: number): void {
     const robot = this.robotAt(waypoint);
-    this.app.setExhibit({ robot, finding: findingOf(robot, this.report!, this.loads) });
+    const { bounds } = this;
+    this.app.setExhibit({ robot, finding: findingOf(robot, this.report!, this.loads), bounds });
   }
 
-  /** Colours come when the core has found the loads; meanwhile modules are grey. */
+  /**
+   * Colours come when the core has found the loads; meanwhile modules are grey. Those of the next stage are
+   * found while this one is played.
+   */
   private async findLoads(at: number): Promise<void> {
+    const { judged } = this;
     try {
-      const loads = await this.client.stage(this.stepIndex, this.stage, this.report?.waypoint ?? 0);
+      const step = Math.floor(at / STAGES.length);
+      const loads = await this.client.stage(step, at % STAGES.length, this.reportAt(at)?.waypoint ?? 0);
+      if (judged !== this.judged) {
+        return;
+      }
+      this.known.set(at, loads);
+      [...this.known.keys()].slice(0, -STAGES_KNOWN).forEach((old) => this.known.delete(old));
       if (this.at === at) {
         this.loads = loads;
         this.exhibit(this.isMoving ? this.waypointNow(performance.now()) : (this.report!.waypoint ?? 0));
@@ -320,7 +345,10 @@ export class Timeline {
         this.app.moveExhibit(this.robotAt(this.waypointNow(now)));
       }
     } else if (this.at + 1 < this.stageCount) {
-      this.show(this.at + 1);
+      // A core that is behind is waited for: what is played has its colours.
+      if (this.known.has(this.at + 1) || !this.client.isBusy) {
+        this.show(this.at + 1);
+      }
     } else {
       this.pause();
       say(byId('sequence-text').textContent ?? '');
@@ -334,9 +362,6 @@ export class Timeline {
     this.isPlaying = false;
     if (wasMoving) {
       this.exhibit(this.report!.waypoint ?? 0);
-    }
-    if (wasPlaying && this.at !== undefined && !this.loads) {
-      void this.findLoads(this.at);
     }
     this.showPlaying();
   }
@@ -403,7 +428,7 @@ function summary({ report, texts }: JudgedSteps): string {
   const isSafe = ({ stages }: (typeof report.steps)[number]) => STAGES.every((stage) => stages[stage].verdict === 'safe');
   const safe = report.steps.filter(isSafe).length;
   const ratio = report.load_ratio_max === null ? '' : `; largest load ${formatRatio(report.load_ratio_max)}`;
-  const margin = report.margin_min_mm === null ? '' : `; smallest margin ${report.margin_min_mm.toFixed(2)} mm`;
+  const margin = report.margin_min_mm === null ? '' : `; smallest margin ${numberText(report.margin_min_mm)} mm`;
   const first = report.first_unsafe ? `; first unsafe: step ${report.first_unsafe.step}, ${report.first_unsafe.stage}` : '';
   return `${safe} of ${counted(texts.length, 'step')} safe in every stage${ratio}${margin}${first}.`;
 }

@@ -27,6 +27,8 @@ export class WhereNext {
   previewed: readonly Cell[] = [];
   /** The answer to the robot as it is has come; before that nothing is tried. */
   knowsLoads = false;
+  /** Another robot than the one that is built is shown. */
+  isOff = false;
   private isShown = false;
   private isTrying = false;
   /** That of the workbench before its last change. */
@@ -89,7 +91,7 @@ export class WhereNext {
   /** Draws what is known of free faces. */
   paint(): void {
     const code = (place: Cell) => (this.knowsLoads ? this.faceCode(place) : FaceCode.kWaiting);
-    this.view.showFaces(this.isShown ? code : undefined);
+    this.view.showFaces(this.isShown && !this.isOff ? code : undefined);
   }
 
   /** For who listens: what would come of a module in a free cell, if it is known. */

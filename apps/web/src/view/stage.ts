@@ -123,6 +123,15 @@ export class Stage {
     this.draw();
   }
 
+  /** All of a box of nodes is in the picture. */
+  holds(low: Place, high: Place): boolean {
+    const { clientWidth, clientHeight } = this.canvas;
+    this.camera.updateMatrixWorld();
+    return Array.from({ length: 8 }, (_, corner) =>
+      this.project(new Vector3().fromArray(low.map((value, k) => ((corner >> k) & 1 ? high[k] + 0.5 : value - 0.5)))),
+    ).every((at) => at && at.x >= 0 && at.x <= clientWidth && at.y >= 0 && at.y <= clientHeight);
+  }
+
   private resize(): void {
     const { clientWidth, clientHeight } = this.canvas;
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
