@@ -224,9 +224,9 @@ TEST(Conductor, a_ratio_near_one_asks_for_a_better_solution) {
   drive.to_equilibrium();
   drive.to_judgement();
   const float ratio = 1.0003F;
-  EXPECT_EQ(drive.next(drive.low(2e-4F, ratio)).operation, Operation::kStart);
+  EXPECT_EQ(drive.next(drive.low(2e-5F, ratio)).operation, Operation::kStart);
   drive.to_judgement();
-  EXPECT_EQ(drive.next(drive.low(5e-5F, ratio)).operation, Operation::kLoads);
+  EXPECT_EQ(drive.next(drive.low(1e-5F, ratio)).operation, Operation::kLoads);
   drive.next(loads(ratio));
   drive.expect_finished(Verdict::kOverload, Reason::kBreaks);
 }
