@@ -210,7 +210,7 @@ void expect_verdict(float ratio, float error, Verdict verdict, Reason reason) {
 TEST(Conductor, the_largest_ratio_decides) {
   expect_verdict(0.5F, 1e-4F, Verdict::kSafe, Reason::kHolds);
   expect_verdict(-3, 1e-4F, Verdict::kSafe, Reason::kHolds);
-  expect_verdict(0.999F, 1e-4F, Verdict::kSafe, Reason::kHolds);
+  expect_verdict(0.999F, 4e-5F, Verdict::kSafe, Reason::kHolds);
   expect_verdict(1.5F, 1e-4F, Verdict::kOverload, Reason::kBreaks);
   expect_verdict(1000, 1e-4F, Verdict::kOverload, Reason::kBreaks);
 }
