@@ -408,7 +408,7 @@ void Agent::take_order(const Order& order) {
   }
   is_withdrawn_ = is_withdrawn_ && !is_renewal;
   if (!is_withdrawn_) {
-    watch_.begin_order(order.operation, clock_);
+    watch_.begin_order(order.operation, ws_.tree.hops_max(), clock_);
   }
   sweep_.take_order(ws_, announcements_, order);
   if (order.operation == wire::Operation::kVerdict && !is_withdrawn_) {

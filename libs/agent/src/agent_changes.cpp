@@ -159,7 +159,7 @@ bool Agent::take_adoption(Direction face, const Adoption& adoption) {
   }
   welcoming_.add(face);
   sweep_.adopt(ws_);
-  watch_.set_wave_time(adoption.wave_time);
+  watch_.set_wave_time(adoption.wave_time, ws_.tree.hops_max(), clock_.timing);
   ws_.own_load_ratio = adoption.load_ratio;
   withdraw();
   return true;

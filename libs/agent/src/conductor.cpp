@@ -307,8 +307,8 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
   error_best_ = kUnbounded;
   target_ = is_fixed_ ? kRatioTolerance : kStateTolerance;
   kept_states_ = false;
+  may_differ_ = false;
   if constexpr (kSeeksOthers) {
-    may_differ_ = false;
     seeking_ = Seeking::kNotYet;
     other_fails_ = false;
     is_by_one_foot_ = false;
@@ -367,8 +367,8 @@ void Conductor::note_facets(const Report& report) {
   if constexpr (kKeepsAnswers) {
     is_spoiled_ = is_spoiled_ || report.changed_count() > 0;
   }
+  may_differ_ = (report.flags & kMayDiffer) != 0;
   if constexpr (kSeeksOthers) {
-    may_differ_ = (report.flags & kMayDiffer) != 0;
     states_hash_ = report.states_hash();
   }
 }
@@ -416,8 +416,11 @@ Order Conductor::judge_regularised(const Setup& setup, const Report& report) {
   if (is_back()) {
     return next_trial(setup);
   }
-  if (was_seen(report.states_hash()) || effort_.contact_iterations > contact_iterations_max_) {
-    return is_seeking() ? leave_trial(setup, false) : begin_law(setup, true);
+  const bool is_cycle = was_seen(report.states_hash());
+  if (is_cycle || effort_.contact_iterations > contact_iterations_max_) {
+    return is_seeking()         ? leave_trial(setup, !is_cycle)
+           : may_hang_by_foot() ? begin_one_foot()
+                                : begin_law(setup, true);
   }
   ++effort_.contact_iterations;
   error_best_ = kUnbounded;
@@ -460,9 +463,10 @@ bool Conductor::was_seen(std::uint32_t hash) {
       return true;
     }
   }
-  if (seen_count_ == kSeenMax) {
+  if (seen_count_ == kSeenMax && !is_by_one_foot()) {
     return true;
   }
+  seen_count_ = static_cast<std::uint8_t>(seen_count_ % kSeenMax);
   seen_[seen_count_++] = hash;
   return false;
 }

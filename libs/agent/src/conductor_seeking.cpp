@@ -8,8 +8,9 @@
 // robot is safe of which another solution breaks a connection or falls.
 //
 // Where Newton's method settles nowhere, and contact states say whether the robot falls, it is
-// those that fall that are sought: who falls hangs by one foot, so each edge of each foot is tried
-// as all that presses. The exact law decides whether what is not found to fall is safe.
+// those that fall that are sought: who falls hangs by one foot, so each foot is tried as all that
+// presses, all over and by each edge and corner. The exact law decides whether what is not found to
+// fall is safe.
 #include "holdfast/agent/conductor.hpp"
 #include "holdfast/mechanics/connector.hpp"
 #include "methods.hpp"
@@ -21,15 +22,12 @@ namespace {
 
 using wire::Operation;
 
-/// Facets that are tried at most; random robots of up to 60 modules have 11.
-constexpr std::uint8_t kTrialsMax = 16;
+/// Trials at most, one of each facet or of each state in which a facet presses alone; a robot with
+/// more is not safe. Random robots of up to 60 modules have 11 facets to try on a floor.
+constexpr int kTrialsMax = 250;
 
 /// Changes of contact states in one trial.
 constexpr std::uint32_t kChangesOfTrial = 20;
-
-/// Edges that are tried at most where a robot may hang by one foot, and changes in one such trial.
-constexpr int kTrialsByOneFoot = 32;
-constexpr std::uint32_t kChangesByOneFoot = 6;
 
 /// On a level floor a largest load ratio below this is not doubted: of 80 further solutions of
 /// 7,400 random robots none has more than 1.2 times another's.
@@ -45,22 +43,27 @@ bool Conductor::is_seeking() const {
   return kSeeksOthers && (seeking_ == Seeking::kTrying || seeking_ == Seeking::kReturning);
 }
 
-/// Clusters of modules keep what would have to be forgotten, and a Jacobi method looks states up
-/// before it has a solution.
-bool Conductor::may_seek() const {
-  return kSeeksOthers && may_differ_ && !is_unilateral_ && seeking_ == Seeking::kNotYet &&
-         !may_have_clusters() && !is_jacobi() &&
+/// May there be another solution, and has nobody sought it?
+bool Conductor::is_doubted() const {
+  return may_differ_ && !is_unilateral_ && seeking_ == Seeking::kNotYet &&
          (may_fall() || ratio_ > (is_uneven() ? kDoubtedFromUneven : kDoubtedFrom)) &&
          !mechanics::breaks(ratio_);
+}
+
+/// Clusters of modules keep what would have to be forgotten, and a Jacobi method looks states up
+/// before it has a solution. Robots of those methods, and those of firmware, are not safe where
+/// they are doubted.
+bool Conductor::may_seek(const Setup& setup) const {
+  return kSeeksOthers && has_gradients(setup) && is_doubted() && !may_have_clusters() &&
+         !is_jacobi();
 }
 
 /// Do contact states say whether it falls?
 bool Conductor::may_fall() const { return is_uneven() && !is_fixed_; }
 
-/// States go round in circles. May there be a solution that falls? Asked by elimination only: by
-/// other methods these trials take twenty times what all else does.
+/// States go round in circles. May there be a solution that falls?
 bool Conductor::may_hang_by_foot() const {
-  return kSeeksOthers && may_fall() && is_exact() && !is_unilateral_ &&
+  return kSeeksOthers && may_fall() && !is_jacobi() && !is_unilateral_ &&
          seeking_ == Seeking::kNotYet;
 }
 
@@ -69,6 +72,8 @@ bool Conductor::is_back() const {
   return kSeeksOthers && !is_by_one_foot_ && seeking_ == Seeking::kTrying &&
          states_hash_ == found_hash_;
 }
+
+bool Conductor::is_by_one_foot() const { return kSeeksOthers && is_by_one_foot_; }
 
 Order Conductor::begin_seeking() {
   seeking_ = Seeking::kTrying;
@@ -111,16 +116,18 @@ Order Conductor::after_seek(const Setup& setup, const Report& report) {
   error_best_ = kUnbounded;
   stagnation_count_ = 0;
   target_ = kRatioTolerance;
-  contact_iterations_max_ =
-      effort_.contact_iterations + (is_by_one_foot_ ? kChangesByOneFoot : kChangesOfTrial);
+  contact_iterations_max_ = effort_.contact_iterations + kChangesOfTrial;
+  const std::uint8_t seen_count = seen_count_;
   begin_states();
+  // From states that another trial has come to this one would go the same way.
+  seen_count_ = is_by_one_foot_ ? seen_count : std::uint8_t{0};
   return has_fronts() ? tree_iteration() : is_one_sweep() ? first_iteration() : move(0);
 }
 
 /// The next facet; behind the last one all go back to what was found.
 Order Conductor::next_trial(const Setup& setup) {
-  const int trials_max = is_by_one_foot_ ? kTrialsByOneFoot : kTrialsMax;
-  const bool has_next = next_key_ != 0 && trial_count_ < trials_max && !other_fails_;
+  other_fails_ = other_fails_ || (next_key_ != 0 && trial_count_ == kTrialsMax);
+  const bool has_next = next_key_ != 0 && !other_fails_;
   if (is_by_one_foot_ && !has_next) {
     take_safest_method(setup);
     return begin_anew(setup, true);
@@ -148,11 +155,14 @@ Order Conductor::after_trial(const Setup& setup) {
   return settled(setup);
 }
 
-/// A trial that comes to no end says nothing. What was found first is found again from rest.
-/// `is_lost`: not as states went round in circles, but as the method did not converge.
+/// A trial whose states go round in circles has no solution. Of one that is lost, as the method did
+/// not converge, nobody knows: a safer method tries all again, and behind the safest one the robot
+/// is not safe. What was found first is found again from rest.
 Order Conductor::leave_trial(const Setup& setup, bool is_lost) {
   is_trial_lost_ = is_trial_lost_ || is_lost;
   if (seeking_ == Seeking::kTrying) {
+    const bool is_safest = is_by_one_foot_ || !is_one_sweep() || !has_gradients(setup);
+    other_fails_ = other_fails_ || (is_lost && is_safest);
     return next_trial(setup);
   }
   is_newton_ = was_newton_;
@@ -185,7 +195,7 @@ Order Conductor::seek_by_gradients(const Setup& setup) {
 
 /// The load ratio is known, by the regularised law.
 Order Conductor::conclude(const Setup& setup) {
-  if (kSeeksOthers && other_fails_) {
+  if ((kSeeksOthers && other_fails_) || is_doubted()) {
     return finish(Verdict::kUndecided, Reason::kAmbiguousFeet);
   }
   if (may_pull()) {

@@ -87,17 +87,15 @@ void seek_facet(Facet& facet, bool is_doubtful, const base::Cell& cell, int inde
   }
 }
 
-/// The same in a kSeek with kOneFoot: each edge has a key.
+/// The same in a kSeek with kOneFoot: each state in which the facet presses has a key.
 template <class Facet>
-void press_on_edge(Facet& facet, const base::Cell& cell, int index, const Order& order,
-                   Report& report) {
+void press_alone(Facet& facet, const base::Cell& cell, int index, const Order& order,
+                 Report& report) {
   constexpr int kIndexMax = 16;
-  constexpr std::array<mechanics::ContactState, 4> kEdges = {
-      {{.tilt_x = 1}, {.tilt_x = -1}, {.tilt_y = 1}, {.tilt_y = -1}}};
   facet.state = {.pressed = false};
-  for (std::size_t edge = 0; edge < kEdges.size(); ++edge) {
-    const std::uint32_t key = seek_key(cell, index + kIndexMax * static_cast<int>(1 + edge));
-    facet.state = key == order.key() ? kEdges[edge] : facet.state;
+  for (int code = 1; code < mechanics::ContactState::kCodeCount; ++code) {
+    const std::uint32_t key = seek_key(cell, index + kIndexMax * code);
+    facet.state = key == order.key() ? mechanics::ContactState::from_code(code) : facet.state;
     offer_key(key, order, report);
   }
   facet.wanted = facet.state;
@@ -105,7 +103,7 @@ void press_on_edge(Facet& facet, const base::Cell& cell, int index, const Order&
 
 /// A kSeek: all facets in the states that were found, but that of the order's key. A pressed one is
 /// opened, an open one presses all over. With kOneFoot all are open, but that of the order's key:
-/// it presses on the key's edge.
+/// it presses as the key says, with one edge or corner or all over.
 void seek_facets(Workspace& ws, const Order& order, Report& report);
 
 /// A kHold: releases open facets and holds pressed ones (count: how many changed); number: open but

@@ -130,7 +130,7 @@ void seek_facets(Surroundings& node, const ContactSetting& contact, const Vec6<d
   for (TouchingFacet& facet : facets_of(node)) {
     ++index;
     if ((order.flags & kOneFoot) != 0) {
-      press_on_edge(facet, cell, index, order, report);
+      press_alone(facet, cell, index, order, report);
     } else {
       const bool doubts = is_doubtful(contact, facet.state, to_local(node, facet, u));
       seek_facet(facet, doubts, cell, index, order, report);

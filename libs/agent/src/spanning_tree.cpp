@@ -37,6 +37,7 @@ void SpanningTree::begin_wave(Links& links, const Round& round, Wave wave, Faces
   wave_ = wave;
   parent_ = parent;
   hops_ = hops;
+  hops_max_ = wave != Wave::kFirst && hops_max_ > hops ? hops_max_ : hops;
   nearer_ = parent;
   children_ = {};
   has_returned_ = false;
@@ -103,6 +104,7 @@ bool SpanningTree::take_join(Links& links, Direction face, const Join& join, boo
 void SpanningTree::adopt(Links& links, Direction face, const Adoption& adoption) {
   settle(links, face, adoption.sender, true);
   root_cell_ = adoption.root;
+  hops_max_ = 0;
   begin_wave(links, adoption.round, Wave::kTree, Faces::only(face), hops_beyond(adoption.hops));
 }
 

@@ -22,6 +22,12 @@ constexpr Time kWaveSilences = 4;
 /// messages and a join is one.
 constexpr Time kWavesPerSilence = 32;
 
+/// Waves cross the robot six times, there and back; each hop of a quiet line takes a tenth of
+/// `retransmit_after`, and with one packet in ten lost a third. The longest of a module's ways to
+/// where waves began is a quarter of the robot's longest way or more: one of those is an end of it,
+/// one its middle.
+constexpr std::uint32_t kRetriesPerHop = 10;
+
 /// Rounds that begin one after the other without an end, as when a module starts again and again;
 /// from then on the module is `undecided` until one ends.
 constexpr std::uint8_t kRoundsWithoutEndMax = 16;
@@ -80,9 +86,14 @@ void Watch::keep_waiting(const Clock& clock) {
   }
 }
 
-void Watch::begin_order(wire::Operation operation, const Clock& clock) {
+void Watch::set_wave_time(std::uint32_t time, std::uint16_t hops, const LinkTiming& timing) {
+  const Time most = kRetriesPerHop * (hops + 1U) * timing.retransmit_after;
+  wave_time_ = time < most ? time : static_cast<std::uint32_t>(most);
+}
+
+void Watch::begin_order(wire::Operation operation, std::uint16_t hops, const Clock& clock) {
   if (phase_ <= Phase::kTree) {
-    wave_time_ = static_cast<std::uint32_t>(clock.now) - wave_time_;
+    set_wave_time(static_cast<std::uint32_t>(clock.now) - wave_time_, hops, clock.timing);
   }
   if (kKeepsAnswers && operation == wire::Operation::kRenew) {
     withdraw(clock);

@@ -257,6 +257,70 @@ TEST(Conductor, conjugate_gradients_seek_once_more_where_a_trial_does_not_conver
   EXPECT_EQ(drive.order.flags, kRemember);
 }
 
+/// All want to go back at once. With more than can be tried nobody knows what the others lead to.
+TEST(Conductor, tries_every_facet_that_may_differ_or_is_not_safe) {
+  for (const std::uint32_t count : {17U, 250U, 251U}) {
+    Drive drive = seeking_drive(0.9F);
+    Report last{.count = count, .number = 1};
+    std::uint32_t tried = 0;
+    while (drive.next(last).operation == Operation::kSeek && drive.order.key() != 0) {
+      ASSERT_EQ(drive.order.key(), ++tried);
+      drive.next({.count = count, .number = tried < count ? tried + 1 : 0});
+      drive.next();
+      last = settled_report(0.9F, kFoundHash, 1);
+    }
+    EXPECT_EQ(tried, count == 251 ? 250 : count);
+    return_to_found(drive, 0.9F);
+    drive.expect_finished(count == 251 ? Verdict::kUndecided : Verdict::kSafe,
+                          count == 251 ? Reason::kAmbiguousFeet : Reason::kHolds);
+  }
+}
+
+/// Conjugate gradients are the last method that can try.
+TEST(Conductor, is_not_safe_where_no_method_brings_a_trial_to_an_end) {
+  for (const bool converges : {false, true}) {
+    Drive drive;
+    drive.to_equilibrium();
+    drive.to_judgement();
+    ASSERT_EQ(drive.next(settled_report(0.9F, kFoundHash)).operation, Operation::kSeek);
+    ASSERT_EQ(drive.next({.count = 1, .number = 5}).operation, Operation::kSeek);
+    ASSERT_EQ(drive.next({.count = 1}).operation, Operation::kHigh);
+    drive.next();
+    drive.next(converges ? settled_report(0.9F, kFoundHash + 1) : drive.low(kNan, 0.9F));
+    ASSERT_EQ(drive.order.operation, Operation::kSeek);
+    EXPECT_EQ(drive.order.key(), 0U);
+    drive.next({.count = 1, .number = 5});
+    drive.next();
+    ASSERT_EQ(drive.next(settled_report(0.9F, kFoundHash)).operation, Operation::kLoads);
+    drive.next({.number = kCensus, .reals = {0.9F}});
+    drive.expect_finished(converges ? Verdict::kSafe : Verdict::kUndecided,
+                          converges ? Reason::kHolds : Reason::kAmbiguousFeet);
+  }
+}
+
+/// A robot with the methods of firmware cannot try: what may break by another solution is not safe.
+TEST(Conductor, is_not_safe_where_another_solution_may_break_and_none_can_be_sought) {
+  for (const bool may_differ : {false, true}) {
+    for (const float ratio : {0.7F, 0.9F, 1.1F}) {
+      Drive drive = one_sweep_drive(false);
+      drive.setup.only_one_sweep = true;
+      drive.next();
+      drive.next();
+      Report found = settled_report(ratio, kFoundHash);
+      found.flags = may_differ ? found.flags : std::uint8_t{0};
+      ASSERT_EQ(drive.next(found).operation, Operation::kLoads);
+      drive.next({.number = kCensus, .reals = {ratio}});
+      const bool is_doubted = may_differ && ratio == 0.9F;
+      drive.expect_finished(is_doubted  ? Verdict::kUndecided
+                            : ratio > 1 ? Verdict::kOverload
+                                        : Verdict::kSafe,
+                            is_doubted  ? Reason::kAmbiguousFeet
+                            : ratio > 1 ? Reason::kBreaks
+                                        : Reason::kHolds);
+    }
+  }
+}
+
 TEST(Conductor, what_is_not_found_again_is_found_from_rest) {
   Drive drive = seeking_drive(0.9F);
   drive.next({.count = 1, .number = 5});

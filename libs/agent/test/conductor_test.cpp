@@ -210,7 +210,7 @@ void expect_verdict(float ratio, float error, Verdict verdict, Reason reason) {
 TEST(Conductor, the_largest_ratio_decides) {
   expect_verdict(0.5F, 1e-4F, Verdict::kSafe, Reason::kHolds);
   expect_verdict(-3, 1e-4F, Verdict::kSafe, Reason::kHolds);
-  expect_verdict(0.999F, 1e-4F, Verdict::kSafe, Reason::kHolds);
+  expect_verdict(0.999F, 4e-5F, Verdict::kSafe, Reason::kHolds);
   expect_verdict(1.5F, 1e-4F, Verdict::kOverload, Reason::kBreaks);
   expect_verdict(1000, 1e-4F, Verdict::kOverload, Reason::kBreaks);
 }
@@ -224,9 +224,9 @@ TEST(Conductor, a_ratio_near_one_asks_for_a_better_solution) {
   drive.to_equilibrium();
   drive.to_judgement();
   const float ratio = 1.0003F;
-  EXPECT_EQ(drive.next(drive.low(2e-4F, ratio)).operation, Operation::kStart);
+  EXPECT_EQ(drive.next(drive.low(2e-5F, ratio)).operation, Operation::kStart);
   drive.to_judgement();
-  EXPECT_EQ(drive.next(drive.low(5e-5F, ratio)).operation, Operation::kLoads);
+  EXPECT_EQ(drive.next(drive.low(1e-5F, ratio)).operation, Operation::kLoads);
   drive.next(loads(ratio));
   drive.expect_finished(Verdict::kOverload, Reason::kBreaks);
 }

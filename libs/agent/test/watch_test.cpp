@@ -98,6 +98,45 @@ TEST(Watch, without_the_root_a_verdict_ends_in_its_time) {
   EXPECT_EQ(network.agent(root == 0 ? 1 : 0).answer().reason, Reason::kNoAnswer);
 }
 
+/// Whatever held the waves up, and whatever a neighbour says: 10 retries a hop, and 32 W for a
+/// sweep, behind a silence of 16 (ping_after + 8 retransmit_after).
+TEST(Watch, no_wait_is_long_because_waves_were_or_are_said_to_have_been) {
+  const LinkTiming timing;
+  const Time silence = 16 * (timing.ping_after + 8 * timing.retransmit_after);
+  for (const std::uint16_t hops : {std::uint16_t{0}, std::uint16_t{5}, std::uint16_t{65'535}}) {
+    const Time most = 10 * (hops + Time{1}) * timing.retransmit_after;
+    for (const Time waves : {Time{300'000}, Time{60'000'000}, Time{0xffff'ffff}}) {
+      const Time expected = std::min(waves, most);
+      Watch watch;
+      watch.enter_round({.timing = timing, .now = 0});
+      watch.enter_phase(Phase::kTree);
+      watch.begin_order(wire::Operation::kPlan, hops, {.timing = timing, .now = waves});
+      EXPECT_EQ(watch.wave_time(), expected);
+      EXPECT_EQ(watch.at(), waves + silence + 32 * expected);
+      watch.set_wave_time(static_cast<std::uint32_t>(waves), hops, timing);
+      EXPECT_EQ(watch.verdict_time(timing), timing.ping_after + lost_after(timing) + 2 * expected);
+    }
+  }
+}
+
+/// A line that brings nothing for a while, and is not lost yet, in the middle of the waves.
+TEST(Watch, waves_that_were_held_up_make_no_verdict_stand_longer) {
+  const auto setup = table_setup();
+  const LinkTiming& timing = setup.timing;
+  const Time held_up = lost_after(timing) - timing.ping_after;
+  TestNetwork network(setup, row(3));
+  network.divert = [&](std::size_t from, base::Direction, std::span<const std::uint8_t>) {
+    return from == 2 && network.now() > 15 && network.now() < held_up;
+  };
+  ASSERT_TRUE(network.run_until(is_safe));
+  ASSERT_GT(network.now(), held_up);
+  for (std::size_t i = 0; i < network.size(); ++i) {
+    const Time longest = 2 * 10 * 3 * timing.retransmit_after;
+    EXPECT_LE(network.agent(i).watch_time(), timing.ping_after + lost_after(timing) + longest);
+    EXPECT_GT(held_up, longest / 2);  // Else nothing is seen.
+  }
+}
+
 /// A module that crashes again and again begins a round each time; none comes to its end.
 TEST(Watch, rounds_that_never_end_are_undecided_until_one_does) {
   const auto setup = table_setup();

@@ -5,8 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "holdfast/agent/deflation.hpp"
-#include "holdfast/agent/energy_bound.hpp"
+#include "holdfast/agent/conductor_state.hpp"
 #include "holdfast/agent/messages.hpp"
 #include "holdfast/agent/order.hpp"
 #include "holdfast/agent/planned.hpp"
@@ -75,17 +74,6 @@
 /// Newton's method with a line search, then with open feet released.
 namespace holdfast::agent {
 
-/// What was done, for reports.
-struct Effort {
-  std::uint32_t iterations = 0;          ///< Iterations of the linear method.
-  std::uint32_t solves = 0;              ///< Corrections started.
-  std::uint32_t contact_iterations = 0;  ///< Changes of contact states.
-  std::uint32_t module_count = 0;        ///< Planned ones included.
-  Method method = Method::kElimination;  ///< The last one used.
-  bool is_unilateral = false;
-  float ratio_error = 0;  ///< Bound at the end.
-};
-
 /// What modules have been lent memory for (LentMemory).
 struct Lent {
   bool has_fronts = false;
@@ -93,8 +81,10 @@ struct Lent {
   Deflation* deflation = nullptr;  ///< Null: iterations are not deflated.
 };
 
-class Conductor {
+class Conductor : private ConductorState {
  public:
+  Conductor() : ConductorState() { asked_ = wire::Operation::kPlan; }
+
   /// The first order. `root` is the root's own cell, `module_count` how many the wave has counted,
   /// and `depth` how many hops the deepest of them is away.
   Order begin(const Setup& setup, const base::Cell& root, std::uint32_t module_count,
@@ -138,8 +128,6 @@ class Conductor {
     double c = 0;
     double square = 0;  ///< (p, q) of p - c p_older, or |q|^2
   };
-
-  static constexpr int kSeenMax = 24;
 
   /// Plans that end in one round, at most; more end as `undecided`.
   static constexpr std::uint8_t kForgottenMax = 200;
@@ -244,10 +232,12 @@ class Conductor {
 
   // conductor_seeking.cpp; constants in a program that does not seek.
   bool is_seeking() const;
-  bool may_seek() const;
+  bool is_doubted() const;
+  bool may_seek(const Setup& setup) const;
   bool may_fall() const;
   bool may_hang_by_foot() const;
   bool is_back() const;
+  bool is_by_one_foot() const;
   Order begin_seeking();
   Order begin_one_foot();
   Order seek(std::uint32_t key, std::uint8_t flags = 0);
@@ -283,108 +273,6 @@ class Conductor {
   bool was_seen(std::uint32_t hash);
   std::uint32_t jacobi_span() const;
   bool is_jacobi_stuck();
-
-  wire::Operation asked_ = wire::Operation::kPlan;  ///< What the next report is about.
-  Effort effort_;
-  base::Cell root_;
-  std::uint32_t census_ = 0;
-  std::uint16_t degree_ = 0;  ///< Degree of the polynomial preconditioner.
-  std::uint8_t planned_count_ = 0;
-  std::uint8_t forgotten_count_ = 0;
-  PlannedMasks totals_{};
-  bool is_any_remote_ = false;
-  std::uint32_t contact_iterations_max_ = 0;  ///< Under the present law.
-  bool is_fixed_ = false;
-  bool is_uneven_ = false;  ///< The rigid body alone does not say whether it topples.
-  std::uint16_t extent_ = 0;
-  // From one verdict to the next.
-  bool has_motion_ = false;   ///< Displacements and contact states are those of the verdict, ...
-  bool has_factors_ = false;  ///< ... and elimination's factors; nothing new has stiffness.
-  bool is_resumed_ = false;   ///< This verdict has started from the last one.
-  std::uint16_t wave_depth_ = 0;  ///< Of the tree when the waves had made it.
-  bool is_same_shape_ = false;    ///< All that has changed is that planned modules are there now.
-  bool has_given_up_ = false;     ///< The regularised law may have a state: no method came to it.
-  std::int32_t mass_ = 0;         ///< Of all modules, planned ones included, ...
-  std::array<std::int32_t, 2> moment_{};  ///< ... and their first moments from the root.
-
-  // Equilibrium.
-  bool is_unilateral_ = false;
-  bool is_tilting_ = false;
-  bool has_history_ = false;  ///< The last solve was for the same contact states.
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
-  std::uint8_t slack_bits_ = 0;  ///< Setup::slack_bits
-#endif
-  std::uint32_t states_hash_ = 0;  ///< Of the contact states wanted at the last judgement.
-  bool may_differ_ = false;        ///< A facet may have a second state.
-  bool is_comparing_ = false;      ///< Open feet freed, to see whether the verdict stays.
-  bool may_pull_ = false;          ///< Weak springs away from a level floor may carry.
-  bool is_standing_ = false;       ///< By the corners that press.
-  /// Beside the unilateral law: the weakest, then some that single precision can tell, then those
-  /// that only answer whether the robot hangs on them.
-  enum class WeakSprings : std::uint8_t { kWeakest, kStiffer, kToppling };
-  WeakSprings weak_springs_ = WeakSprings::kWeakest;
-  bool is_second_ = false;  ///< The unilateral law is asked as well, as they may.
-  double gamma_ = 0;        ///< (r, z) of conjugate gradients.
-  double alpha_ = 0;
-  double solve_error_ = 0;  ///< A solve ends when its residual's bound is below.
-  std::uint32_t solve_iterations_ = 0;
-  std::uint32_t solve_iterations_max_ = 0;
-  double error_ = 0;  ///< Bound on the error of load ratios at the last judgement.
-  double error_best_ = 0;
-  double ratio_ = 0;
-  double target_ = 0;
-  std::uint8_t stagnation_count_ = 0;
-  bool holds_planned_ = false;  ///< Planned modules stand still in M (one-sweep methods), ...
-  bool held_planned_ = false;   ///< ... as they did in the last iteration.
-  bool kept_states_ = false;    ///< The last iteration did not look contact states up.
-  std::array<std::uint32_t, kSeenMax> seen_{};
-  std::uint8_t seen_count_ = 0;
-  // One-sweep methods.
-  std::uint16_t depth_ = 0;
-  bool has_many_loops_ = false;
-  bool may_have_fronts_ = false;    ///< There is memory, and they have not failed.
-  bool has_clusters_ = false;       ///< Iterations are taken with clusters, ...
-  bool has_left_clusters_ = false;  ///< They brought nothing: never again.
-  bool had_clusters_ = false;       ///< ... as the last one was; ...
-  bool has_changed_ = false;        ///< ... not as the one before it: M^-1 is another one.
-  bool has_older_ = false;          ///< There is an older direction.
-  bool least_residual_ = false;     ///< A facet tilts: no energy to minimise.
-  double predicted_ = 0;            ///< Error expected after the last iteration.
-  double older_square_ = 0;         ///< (p, q) of the older direction, or |q|^2.
-  EnergyBound energy_bound_;
-  Deflation* deflation_ = nullptr;  ///< Lent; null: iterations are not deflated.
-  bool is_spoiled_ = false;         ///< The stiffness has changed while this solve went on.
-  // Newton's method by the polynomial.
-  bool is_newton_ = false;        ///< Contact states are kept until their forces are in balance.
-  bool has_left_newton_ = false;  ///< It came to no end: never again.
-  bool stands_in_ = false;        ///< The next iteration is one of a linear problem, ...
-  bool stood_in_ = false;         ///< ... as the last one was.
-  bool is_solved_ = false;  ///< The facets' own forces are in balance, as far as states need it.
-  double enough_ = 0;       ///< The linear problem is solved when its error is below.
-  // Further solutions.
-  enum class Seeking : std::uint8_t { kNotYet, kTrying, kReturning, kDone };
-  Seeking seeking_ = Seeking::kNotYet;
-  std::uint32_t found_hash_ = 0;  ///< Of the states that were found first.
-  std::uint32_t next_key_ = 0;    ///< Of the facet that is tried next; 0: all have been.
-  std::uint8_t trial_count_ = 0;
-  bool other_fails_ = false;     ///< Another solution was found that breaks a connection or falls.
-  bool is_by_one_foot_ = false;  ///< Those are sought that fall, hanging by one foot.
-  bool is_trial_lost_ = false;   ///< A trial did not converge by the present method.
-  bool was_newton_ = false;      ///< is_newton_ before.
-  // Jacobi.
-  std::uint16_t batch_ = 0;
-  std::uint32_t check_at_ = 0;
-  double check_error_ = 0;
-  double least_error_ = 0;
-  // Line search.
-  double low_ = 0;
-  double high_ = 0;
-  std::uint8_t slope_count_ = 0;
-  // The end.
-  bool judges_faces_ = false;  ///< There is memory to judge free faces, ...
-  bool has_judged_ = false;    ///< ... and those of the robot as it is have been.
-  std::uint32_t open_held_count_ = 0;
-  Answer answer_;
 };
 
 }  // namespace holdfast::agent

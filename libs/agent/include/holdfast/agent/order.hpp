@@ -190,7 +190,7 @@ inline constexpr std::uint8_t kIsHeld = 1;         ///< kNext: a module is fixed
 inline constexpr std::uint8_t kHasForces = 2;      ///< kNext: there is an equilibrium, ...
 inline constexpr std::uint8_t kIsUnilateral = 4;   ///< ... by the unilateral law.
 inline constexpr std::uint8_t kRemember = 1;       ///< kSeek: states in use are those found.
-inline constexpr std::uint8_t kOneFoot = 2;        ///< kSeek: one facet presses on an edge, alone.
+inline constexpr std::uint8_t kOneFoot = 2;        ///< kSeek: one facet presses alone.
 
 /// Does a kRenew tell of one plan more?
 constexpr bool is_new_plan(const Order& renew) {

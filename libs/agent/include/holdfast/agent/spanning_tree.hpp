@@ -66,6 +66,9 @@ class SpanningTree {
 
   std::uint16_t hops() const { return hops_; }
 
+  /// The most hops to where one of the round's waves began.
+  std::uint16_t hops_max() const { return hops_max_; }
+
   bool has_cell() const { return has_cell_; }
 
   const base::Cell& cell() const { return cell_; }
@@ -145,6 +148,7 @@ class SpanningTree {
   Faces awaited_;  ///< Neighbours that have neither joined nor echoed.
   Faces nearer_;
   std::uint16_t hops_ = 0;
+  std::uint16_t hops_max_ = 0;
   Census census_;
   base::Cell cell_;
   base::Cell root_cell_;

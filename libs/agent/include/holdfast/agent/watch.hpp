@@ -17,8 +17,11 @@
 ///
 /// W is how long the waves took here, from the first join to the first order. They cross the robot
 /// at least three times, so no order is under way much longer on a sound robot, however large and
-/// noisy it is. The root says its verdict again `ping_after` after all have reported it (no other
-/// module need know why); a robot that is `undecided` already is not watched.
+/// noisy it is. Packets that belong to nobody can hold waves up, and a neighbour can say any W to a
+/// module that comes; so W is no more than kRetriesPerHop `retransmit_after` for each hop to where
+/// a wave began, of the longest of the three. The root says its verdict again `ping_after` after
+/// all have reported it (no other module need know why); a robot that is `undecided` already is not
+/// watched.
 ///
 /// What ends how, after a verdict:
 /// - A module is dead: its parent's link is lost, which starts a new round as ever; who is cut off
@@ -57,7 +60,8 @@ class Watch {
   /// How long the waves took, as a module that comes later is told by its parent.
   std::uint32_t wave_time() const { return wave_time_; }
 
-  void set_wave_time(std::uint32_t time) { wave_time_ = time; }
+  /// `hops`: to where a wave began, the longest way.
+  void set_wave_time(std::uint32_t time, std::uint16_t hops, const LinkTiming& timing);
 
   void enter_phase(Phase phase) { phase_ = phase; }
 
@@ -66,8 +70,8 @@ class Watch {
   /// Something of this module's round has come.
   void keep_waiting(const Clock& clock);
 
-  /// An order has come. One that says the verdict again leaves the phase as it is.
-  void begin_order(wire::Operation operation, const Clock& clock);
+  /// An order has come. One that says the verdict again leaves the phase as it is. `hops` as above.
+  void begin_order(wire::Operation operation, std::uint16_t hops, const Clock& clock);
 
   /// The sweep of a verdict is over here. `is_watched`: it is to be said again.
   void end_verdict(bool is_watched, bool is_root, const Clock& clock);
