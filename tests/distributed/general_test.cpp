@@ -161,7 +161,8 @@ struct Counts {
   int undecided = 0;
 };
 
-/// Never anything else; and undecided only where the exact solver is.
+/// Never anything else, but undecided, which is counted: where the exact solver is, and where a
+/// trial for another solution does not converge.
 void expect_like_exact(const model::RobotSpec& spec, std::uint64_t seed, Counts& counts) {
   const auto robot = model::Robot::create(spec);
   if (!robot) {
@@ -173,8 +174,6 @@ void expect_like_exact(const model::RobotSpec& spec, std::uint64_t seed, Counts&
   EXPECT_FALSE(comparison.is_wrong()) << comparison.text();
   EXPECT_TRUE(comparison.result.all_agree) << comparison.text();
   EXPECT_LT(comparison.ratio_error(), 1) << comparison.text();
-  EXPECT_TRUE(!comparison.is_undecided() || comparison.exact == verdict::Verdict::kUndecided)
-      << comparison.text();
 }
 
 /// On floors and on walls.
