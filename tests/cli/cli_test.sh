@@ -260,6 +260,8 @@ expect_line robots.json '"certainty": "not found"'
 expect_exit 64 robots roffi
 expect_line err 'none of the catalogue'
 expect_exit 0 check --robot rofi "$safe"
+expect_exit 64 check --robot roffi "$safe"
+expect_line err 'none of the catalogue'
 expect_exit 65 check --robot smores-ep wall.json
 expect_line err 'of the robot smores-ep no mass_kg is published'
 

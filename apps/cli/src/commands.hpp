@@ -113,12 +113,21 @@ inline void print_not_written(const std::string& file, const char* reason) {
   }
 }
 
+/// What is wrong with the name of a robot of the catalogue; empty if nothing is.
+inline std::string robot_name_fault(const std::string& name) {
+  return model::find_robot(name) != nullptr
+             ? std::string()
+             : fmt::format("the robot '{}' is none of the catalogue; holdfast robots lists it",
+                           io::one_line(name));
+}
+
 /// The options of commands that read structures, for what a file leaves open.
 inline void add_reading(CLI::App& command, io::ReadOptions& options) {
   command
       .add_option("--robot", options.robot,
                   "Robot of files that do not say it, from the list that holdfast robots shows")
-      ->type_name("NAME");
+      ->type_name("NAME")
+      ->check(robot_name_fault);
   command
       .add_option_function<std::string>(
           "--lattice",

@@ -79,12 +79,6 @@ Json list_json() {
 int run(const RobotsArguments& options) {
   const model::CatalogueRobot* const robot =
       options.name.empty() ? nullptr : model::find_robot(options.name);
-  if (!options.name.empty() && robot == nullptr) {
-    fmt::print(stderr,
-               "holdfast: the robot '{}' is none of the catalogue; holdfast robots lists it\n",
-               io::one_line(options.name));
-    return kExitUsage;
-  }
   if (!options.json.empty()) {
     const Json json = robot == nullptr ? list_json() : robot_json(*robot);
     return write_or_complain(options.json, json.dump(2) + "\n") ? kExitSafe : kExitBadInput;
@@ -104,7 +98,8 @@ Command add_robots(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "robots", "List robots that have been built, with what is known of them and from where");
   command->add_option("NAME", options->name, "Show one of them, with every figure and its source")
-      ->type_name("");
+      ->type_name("")
+      ->check(robot_name_fault);
   command
       ->add_option("--json", options->json,
                    "Write all figures and sources as JSON; - is standard output")
