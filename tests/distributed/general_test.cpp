@@ -228,7 +228,9 @@ TEST(DistributedGeneral, robots_that_were_undecided_are_decided_like_the_exact_a
     }
   }
   EXPECT_EQ(counts.all, test::kIsShort ? 4 : 9);
-  EXPECT_EQ(counts.undecided, 1);  // 281, as check has it.
+  // 281, as check has it; of 61 and of the second catoms, 20, a trial for another solution does not
+  // converge.
+  EXPECT_EQ(counts.undecided, test::kIsShort ? 2 : 3);
 }
 
 /// The exact law holds them; by another solution of the paper's law they fall, hanging by one foot.
