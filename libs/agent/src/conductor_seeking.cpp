@@ -51,8 +51,7 @@ bool Conductor::is_doubted() const {
 }
 
 /// Clusters of modules keep what would have to be forgotten, and a Jacobi method looks states up
-/// before it has a solution. Robots of those methods, and those of firmware, are not safe where
-/// they are doubted.
+/// before it has a solution. Robots of those methods are not safe where they are doubted.
 bool Conductor::may_seek(const Setup& setup) const {
   return kSeeksOthers && has_gradients(setup) && is_doubted() && !may_have_clusters() &&
          !is_jacobi();
@@ -195,7 +194,7 @@ Order Conductor::seek_by_gradients(const Setup& setup) {
 
 /// The load ratio is known, by the regularised law.
 Order Conductor::conclude(const Setup& setup) {
-  if ((kSeeksOthers && other_fails_) || is_doubted()) {
+  if (kSeeksOthers && (other_fails_ || is_doubted())) {
     return finish(Verdict::kUndecided, Reason::kAmbiguousFeet);
   }
   if (may_pull()) {
