@@ -88,7 +88,7 @@ Order Conductor::settled(const Setup& setup, [[maybe_unused]] const Report* last
   if (is_seeking()) {
     return after_trial(setup);
   }
-  if (may_seek(setup)) {
+  if (may_seek()) {
     return begin_seeking();
   }
   if (is_fixed_ && !is_uneven()) {

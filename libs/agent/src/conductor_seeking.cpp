@@ -52,9 +52,8 @@ bool Conductor::is_doubted() const {
 
 /// Clusters of modules keep what would have to be forgotten, and a Jacobi method looks states up
 /// before it has a solution. Robots of those methods are not safe where they are doubted.
-bool Conductor::may_seek(const Setup& setup) const {
-  return kSeeksOthers && has_gradients(setup) && is_doubted() && !may_have_clusters() &&
-         !is_jacobi();
+bool Conductor::may_seek() const {
+  return kSeeksOthers && is_doubted() && !may_have_clusters() && !is_jacobi();
 }
 
 /// Do contact states say whether it falls?

@@ -96,7 +96,7 @@ void report_facet(Report& report, const Workspace& ws, int index) {
   if (node.state.tilt_x != 0 || node.state.tilt_y != 0) {
     report.flags |= kAnyTilting;
   }
-  if (is_doubtful(ws.contact, node.state, node.u)) {
+  if (kSeeksOthers && !ws.setup.only_one_sweep && is_doubtful(ws.contact, node.state, node.u)) {
     report.flags |= kMayDiffer;
   }
 }

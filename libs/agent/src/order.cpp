@@ -434,7 +434,7 @@ constexpr void fields(auto& codec, Order& order) {
 constexpr std::uint8_t kHostedFlags = (1U << kPlannedMax) - 1 + kAnyRemote;
 constexpr std::uint8_t kRenewalFlags =
     kAnyFixed | kSumOverflow | kManyLoops | kMoreAnnounced | kAtOdds | kNewLoop;
-constexpr std::uint8_t kFacetFlags = kAnyTilting | kMayPull | kMayDiffer;
+constexpr std::uint8_t kFacetFlags = kAnyTilting | kMayPull | (kSeeksOthers ? kMayDiffer : 0);
 constexpr std::uint8_t kFrontFlags = kHasAllMethods ? kNoRoom | kNoState : 0;
 
 /// Bound on the error, largest load ratio; facets that change, the hash of all states, any tilting.

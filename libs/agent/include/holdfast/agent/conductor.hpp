@@ -233,7 +233,7 @@ class Conductor : private ConductorState {
   // conductor_seeking.cpp; constants in a program that does not seek.
   bool is_seeking() const;
   bool is_doubted() const;
-  bool may_seek(const Setup& setup) const;
+  bool may_seek() const;
   bool may_fall() const;
   bool may_hang_by_foot() const;
   bool is_back() const;
