@@ -298,14 +298,12 @@ TEST(Conductor, is_not_safe_where_no_method_brings_a_trial_to_an_end) {
   }
 }
 
-/// A robot with the methods of firmware cannot try: what may break by another solution is not safe.
+/// Clusters cannot try: what may break by another solution is not safe.
 TEST(Conductor, is_not_safe_where_another_solution_may_break_and_none_can_be_sought) {
   for (const bool may_differ : {false, true}) {
     for (const float ratio : {0.7F, 0.9F, 1.1F}) {
-      Drive drive = one_sweep_drive(false);
-      drive.setup.only_one_sweep = true;
-      drive.next();
-      drive.next();
+      Drive drive = deep_drive(200);
+      drive.next({.count = 100, .number = 49});
       Report found = settled_report(ratio, kFoundHash);
       found.flags = may_differ ? found.flags : std::uint8_t{0};
       ASSERT_EQ(drive.next(found).operation, Operation::kLoads);
