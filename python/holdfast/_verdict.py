@@ -10,10 +10,10 @@ class Name(str, enum.Enum):
     """A name out of a few: a string, and printed as one whatever the version of Python."""
 
     def __str__(self) -> str:
-        return self.value
+        return str(self.value)
 
     def __format__(self, format_spec: str) -> str:
-        return format(self.value, format_spec)
+        return format(str(self.value), format_spec)
 
 
 class Verdict(Name):

@@ -7,6 +7,8 @@
 #include <chrono>
 #include <utility>
 
+#include "holdfast/plan/robot_state.hpp"
+
 namespace holdfast {
 
 base::Result<io::OrderReport> seek_order(const io::Document& target, const OrderRequest& request) {
