@@ -145,6 +145,20 @@ inline void add_reading(CLI::App& command, io::ReadOptions& options) {
       "errors");
 }
 
+/// Reads a document and prints its notes.
+inline base::Result<io::ReadDocument> read_with_notes(const std::string& file,
+                                                      const io::ReadOptions& options) {
+  const auto text = read_file(file);
+  if (!text) {
+    return text.error();
+  }
+  auto read = io::read_document(text.value(), options);
+  if (read) {
+    print_notes(read.value().warnings, file);
+  }
+  return read;
+}
+
 /// Reads a structure and prints its notes. 0 threads: as many as the machine has cores.
 inline base::Result<Structure> load_with_notes(const std::string& file,
                                                const io::ReadOptions& options = {},

@@ -69,15 +69,10 @@ int run(const ConvertArguments& options) {
   if (complain_of_outputs({&options.from, 1}, {{"the output", options.to}})) {
     return kExitUsage;
   }
-  const auto text = read_file(options.from);
-  if (!text) {
-    return fail(text.error(), options.from);
-  }
-  const auto read = io::read_document(text.value(), options.reading);
+  const auto read = read_with_notes(options.from, options.reading);
   if (!read) {
     return fail(read.error(), options.from);
   }
-  print_notes(read.value().warnings, options.from);
   const io::Document& document = read.value().document;
   if (to_binary) {
     return write_binary(document, options);

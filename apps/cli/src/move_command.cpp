@@ -110,15 +110,10 @@ int verify(const MoveArguments& options, const MoveRequest& request, const io::D
 /// A robot as it stands, so that an error names the file that it is in.
 base::Result<io::Document> read(const std::string& file, std::string_view which,
                                 const io::ReadOptions& options) {
-  const auto text = read_file(file);
-  if (!text) {
-    return text.error();
-  }
-  auto found = io::read_document(text.value(), options);
+  auto found = read_with_notes(file, options);
   if (!found) {
     return found.error();
   }
-  print_notes(found.value().warnings, file);
   if (const auto spec = io::standing_spec(found.value().document, which); !spec) {
     return spec.error();
   }

@@ -57,15 +57,10 @@ std::optional<base::Cell> cell_of(const std::string& text) {
 /// All cells of a document that is to be the start.
 base::Result<std::vector<base::Cell>> start_cells(const OrderArguments& options,
                                                   const model::RobotSpec& target) {
-  const auto text = read_file(options.start);
-  if (!text) {
-    return text.error();
-  }
-  const auto read = io::read_document(text.value(), options.reading);
+  const auto read = read_with_notes(options.start, options.reading);
   if (!read) {
     return read.error();
   }
-  print_notes(read.value().warnings, options.start);
   if (io::step_count(read.value().document) > 0) {
     return base::Error{base::ErrorCode::kBadInput,
                        "it has planned modules or steps; allowed is a robot as it stands",
@@ -182,15 +177,10 @@ int run(const OrderArguments& options) {
     fmt::print(stderr, "holdfast: --reach surface and --source CELL belong together\n");
     return kExitUsage;
   }
-  const auto text = read_file(options.target);
-  if (!text) {
-    return fail(text.error(), options.target);
-  }
-  const auto read = io::read_document(text.value(), options.reading);
+  const auto read = read_with_notes(options.target, options.reading);
   if (!read) {
     return fail(read.error(), options.target);
   }
-  print_notes(read.value().warnings, options.target);
   Progress progress(options.is_quiet);
   OrderRequest request = request_of(options, progress);
   if (!options.start.empty()) {

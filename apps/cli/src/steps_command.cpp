@@ -70,16 +70,8 @@ bool write_files(const StepsArguments& options, const StepsFile& file, const Ste
 
 /// The robot that a certificate is to be of.
 base::Result<model::RobotSpec> read_target(const StepsArguments& options) {
-  const auto text = read_file(options.target);
-  if (!text) {
-    return text.error();
-  }
-  const auto read = io::read_document(text.value(), options.reading);
-  if (!read) {
-    return read.error();
-  }
-  print_notes(read.value().warnings, options.target);
-  return io::order_target(read.value().document);
+  const auto read = read_with_notes(options.target, options.reading);
+  return read ? io::order_target(read.value().document) : read.error();
 }
 
 /// Of which robot there is no order, and with which steps.
