@@ -24,7 +24,7 @@ inline constexpr bool kIsShort = true;
 inline constexpr bool kIsShort = false;
 #endif
 
-/// `all`, a number of robots or of what is counted of them; where it is short a share of it.
+/// `all`, a number of robots or of what is counted of them; where it is short one in `share` of it.
 template <class Count>
 constexpr Count campaign(Count all, Count share = 4) {
   return kIsShort ? std::max(all / share, Count{1}) : all;

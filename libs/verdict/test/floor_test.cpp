@@ -67,7 +67,7 @@ TEST(TiltOnAFloor, is_the_smaller_of_sliding_and_tipping) {
 TEST(TiltOnAFloor, is_where_contact_forces_end) {
   constexpr double kHair = 1e-4;  // So near to a cone's side its margin is known.
   int count = 0;
-  for (int seed = 0; seed < test::campaign(40, 12); ++seed) {
+  for (int seed = 0; seed < test::campaign(40); ++seed) {
     for (const base::Lattice& lattice : test::kLattices) {
       RobotSpec spec =
           test::on_a_floor(test::general_robot(lattice, static_cast<std::uint64_t>(seed)), false);
@@ -89,7 +89,7 @@ TEST(TiltOnAFloor, is_where_contact_forces_end) {
       EXPECT_FALSE(holds(tilted(spec, tilt * (1 + kHair), over_edge)));
     }
   }
-  EXPECT_GT(count, 10);
+  EXPECT_GT(count, test::campaign(10));
 }
 
 /// Where feet differ in friction it lies between those of the least and the most, and is no more
@@ -125,7 +125,7 @@ RobotSpec with_all_friction(RobotSpec spec, double friction) {
 /// modules changes it by no more than that.
 TEST(FrictionNeeded, is_enough_and_hardly_more) {
   int count = 0;
-  for (int seed = 0; seed < test::campaign(200, 60); ++seed) {
+  for (int seed = 0; seed < test::campaign(200); ++seed) {
     for (const base::Lattice& lattice : test::kLattices) {
       RobotSpec spec = test::general_robot(lattice, static_cast<std::uint64_t>(seed));
       const auto robot = model::Robot::create(spec);
@@ -150,7 +150,7 @@ TEST(FrictionNeeded, is_enough_and_hardly_more) {
       }
     }
   }
-  EXPECT_GT(count, 5);
+  EXPECT_GT(count, test::campaign(5));
 }
 
 /// Two wedges of the file that gave 2.2e-5 or 1.3e-4 by the order of modules.
@@ -192,7 +192,7 @@ RobotSpec layer(const base::Lattice& lattice, std::uint64_t seed, std::size_t co
 
 /// Nothing pushes sideways, whatever the scale: what a solver leaves is rounding, and no slip.
 TEST(SmoothFloor, holds_what_nothing_pushes_sideways) {
-  for (int seed = 0; seed < test::campaign(10, 4); ++seed) {
+  for (int seed = 0; seed < test::campaign(10); ++seed) {
     for (const base::Lattice& lattice : test::kLattices) {
       for (const double pitch : {1.0, 40.0, 1000.0}) {
         const std::size_t count = seed == 0 ? 150 : 2 + static_cast<std::size_t>(seed);
@@ -258,7 +258,7 @@ TEST(DisplacedMass, over_the_edge_is_not_safe) {
 /// Of random robots that are made soft, none is safe whose displaced mass is outside its polygon.
 TEST(DisplacedMass, of_a_safe_robot_is_over_its_polygon) {
   int left_count = 0;
-  for (int seed = 0; seed < test::campaign(60, 20); ++seed) {
+  for (int seed = 0; seed < test::campaign(60); ++seed) {
     for (const base::Lattice& lattice : test::kLattices) {
       RobotSpec spec =
           test::on_a_floor(test::general_robot(lattice, static_cast<std::uint64_t>(seed)), false);
