@@ -138,7 +138,7 @@ function makePanel(app: App, keeper: Keeper): void {
     const factor = app.setExaggeration(Number(slider.value) / 100);
     byId('exaggeration-value').textContent = `${factor === 0 || factor >= 10 ? factor.toFixed(0) : factor.toFixed(1)} ×`;
   };
-  byId('topple').onclick = () => app.startTopple();
+  byId('topple').onclick = () => app.toggleTopple();
   byId('stop').onclick = () => app.stop();
   const faces = byId('faces');
   faces.onclick = () => {
@@ -187,7 +187,7 @@ function makeActions(app: App, player: Player, timeline: Timeline): Record<strin
     redo: () => tellDone(bench.history.redo(), 'done again'),
     f: () => bench.refusesNow() || byId('faces').click(),
     h: () => app.see(),
-    t: () => app.startTopple(),
+    t: () => app.toggleTopple(),
     q: () => turn(-Math.PI / 12),
     e: () => turn(Math.PI / 12),
     '+': () => near(0.85),

@@ -682,7 +682,59 @@ test('a load of nothing is no change, and a click that stops a fall attaches not
   await page.evaluate(() => globalThis.holdfast.app.startTopple());
   await page.mouse.click(at.x, at.y);
   assert.equal(await count(page), 4);
-  assert.equal(await page.evaluate(() => globalThis.holdfast.app.toppling.isRunning), false);
+  assert.equal(await page.evaluate(() => globalThis.holdfast.app.isToppled), false);
+  assert.deepEqual(page.faults, []);
+});
+
+test('gravity pulls down the picture, wherever it goes', async () => {
+  const page = await openPage(browser);
+  await begin(page, 'cubic', [[0, 0, 0], [0, 0, 1]]);
+  const pulled = () => page.evaluate(() => {
+    const { app: { stage }, bench } = globalThis.holdfast;
+    const { target } = stage.controls;
+    stage.camera.updateMatrixWorld();
+    const along = target.clone().fromArray(bench.robot.gravity).normalize().multiplyScalar(0.5).add(target);
+    const [from, to] = [stage.project(target), stage.project(along)];
+    return { across: to.x - from.x, down: to.y - from.y };
+  });
+  for (const gravity of [[0, 0, -9.81], [3, 0, -9], [0, -9.81, 0], [5, 5, 5], [0, 0, 9.81], [-1, 2, -9]]) {
+    await open(page, 'pulled', { gravity_m_s2: gravity, modules: [{ cell: [0, 0, 0], fixed: true }, [0, 0, 1]] });
+    for (const keys of ['', 'qqq', 'eh']) {
+      for (const key of keys) {
+        await page.keyboard.press(key);
+      }
+      const { across, down } = await pulled();
+      assert.ok(Math.abs(across) < 0.01 * down && down > 10, `${gravity} ${keys}: ${across}, ${down}`);
+    }
+  }
+  assert.deepEqual(page.faults, []);
+});
+
+test('what has toppled lies until it is stood up', async () => {
+  const page = await openPage(browser, { reducedMotion: 'no-preference' });
+  const lies = () => page.evaluate(() => ({
+    isToppled: globalThis.holdfast.app.isToppled,
+    way: globalThis.holdfast.app.stage.robot.matrix.elements.reduce((sum, x, i) => sum + Math.abs(x - (i % 5 ? 0 : 1)), 0),
+  }));
+  const stands = async (act) => {
+    await page.evaluate(() => globalThis.holdfast.app.stopTopple());
+    await page.click('#topple');
+    await page.waitForTimeout(3500);
+    const { isToppled, way } = await lies();
+    assert.ok(isToppled && way > 0.5, `${act}: ${isToppled}, ${way}`);
+    assert.equal(await page.innerText('#topple'), 'Stand it up');
+    await act();
+    assert.deepEqual(await lies(), { isToppled: false, way: 0 }, String(act));
+    assert.equal(await page.innerText('#topple'), 'Let it topple');
+  };
+  await begin(page, 'cubic', [[0, 0, 0], [0, 0, 1], [1, 0, 1], [2, 0, 1]]);
+  await stands(() => page.click('#topple'));
+  await stands(() => page.keyboard.press('t'));
+  await stands(() => page.focus('canvas').then(() => page.keyboard.press('ArrowUp')));
+  await page.keyboard.press('Escape');
+  const at = await pointBeside(page, [0, 0, 1], [0, -0.5, 0]);
+  await stands(() => page.mouse.click(at.x, at.y));
+  assert.equal(await count(page), 4);
   assert.deepEqual(page.faults, []);
 });
 

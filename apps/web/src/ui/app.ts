@@ -70,7 +70,9 @@ export class App {
   private readonly obstacles = new ObstacleView();
   private readonly facets = new FacetView();
   private readonly loads = new LoadView();
-  private readonly toppling = new Toppling(this.stage, this.ground);
+  private readonly toppling = new Toppling(this.stage, this.ground, () => {
+    byId('topple').textContent = this.isToppled ? 'Stand it up' : 'Let it topple';
+  });
   private readonly judge = new Judge((finding) => this.found(finding));
   private lateShow = 0;
   private wasUnstable = false;
@@ -83,7 +85,7 @@ export class App {
     this.stage.robot.add(this.loads.group);
     this.stage.scene.add(this.ground.group, this.obstacles.group, this.facets.mesh);
     this.stage.followers.push(() =>
-      placeLabels(this.stage, this.view, this.robot, this.toppling.isRunning ? undefined : this.shown),
+      placeLabels(this.stage, this.view, this.robot, this.isToppled ? undefined : this.shown),
     );
     followTheme(() => this.setTheme());
   }
@@ -168,6 +170,7 @@ export class App {
     this.view.showCursor(cell);
     this.point(cell);
     if (cell) {
+      this.stopTopple();
       say(showDetails(this.robot, this.shown, cell, undefined) + this.whereNext.trialText(cell));
     }
   }
@@ -193,9 +196,20 @@ export class App {
 
   /** Upright again; false if it was. */
   stopTopple(): boolean {
-    const { isRunning } = this.toppling;
+    const { isToppled } = this;
     this.toppling.stop();
-    return isRunning;
+    return isToppled;
+  }
+
+  /** It falls or lies: nothing is where it is built. */
+  get isToppled(): boolean {
+    return this.toppling.isToppled;
+  }
+
+  toggleTopple(): void {
+    if (!this.stopTopple()) {
+      this.startTopple();
+    }
   }
 
   /** Everything is drawn anew for a changed robot. */
@@ -217,6 +231,7 @@ export class App {
       this.lateShow = window.setTimeout(() => this.showRobot(), LATE_MS);
       this.judge.ask(robot);
     }
+    this.stage.setGravity(robot.gravity);
     if (what === 'robot') {
       this.see();
     }

@@ -18,7 +18,7 @@ export const KEYS: readonly [keys: string, text: string][] = [
   ['[  ]', 'less, more exaggeration'],
   ['Q  E  +  −', 'turn left, turn right, nearer, further'],
   ['H', 'see all'],
-  ['T', 'let it topple, if it does'],
+  ['T', 'let it topple, if it does; stand it up'],
   ['K  ,  .', 'the robot’s own computation: play or pause, step back, step on'],
   ['S  U  R', 'steps: play or pause, to the first unsafe stage, record'],
   ['Esc', 'put the cursor away'],
@@ -113,7 +113,7 @@ function stepOf(app: App, key: string): Cell | undefined {
     return undefined;
   }
   const [right, away] = arrow;
-  const angle = Math.round(app.stage.controls.getAzimuthalAngle() / (Math.PI / 2));
+  const angle = Math.round(app.stage.azimuth / (Math.PI / 2));
   // From the azimuth, a quarter turn at a time: right and away in plan.
   const quarter = ((angle % 4) + 4) % 4;
   const rights: [number, number][] = [[1, 0], [0, 1], [-1, 0], [0, -1]];

@@ -27,7 +27,8 @@ interface Gesture {
 }
 
 export function listenToPointer(app: App): void {
-  const { canvas, controls } = app.stage;
+  const { stage } = app;
+  const { canvas } = stage;
   let gesture: Gesture | undefined;
 
   canvas.addEventListener(
@@ -37,11 +38,11 @@ export function listenToPointer(app: App): void {
       if (app.bench.cursor) {
         app.moveCursor(undefined);
       }
-      // A click that stops the fall is meant for nothing else.
+      // A click that stands the robot up is meant for nothing else.
       if (gesture || event.button !== 0 || wasFalling) {
         clearTimeout(gesture?.timer);
         gesture = undefined;
-        controls.enabled = true;
+        stage.controls.enabled = true;
         app.whereNext.preview([]);
         return;
       }
@@ -53,7 +54,7 @@ export function listenToPointer(app: App): void {
         const begin = () => {
           gesture!.draws = true;
           gesture!.cells = cellsOf(app, hit);
-          controls.enabled = false;
+          stage.controls.enabled = false;
           preview(app, gesture!.cells);
         };
         if (event.pointerType === 'touch') {
@@ -88,7 +89,7 @@ export function listenToPointer(app: App): void {
   canvas.addEventListener('pointerup', (event) => {
     const ended = gesture;
     gesture = undefined;
-    controls.enabled = true;
+    stage.controls.enabled = true;
     clearTimeout(ended?.timer);
     if (ended?.isClick && isBent(app)) {
       app.straighten();
@@ -104,7 +105,7 @@ export function listenToPointer(app: App): void {
   const forget = () => {
     clearTimeout(gesture?.timer);
     gesture = undefined;
-    controls.enabled = true;
+    stage.controls.enabled = true;
     app.whereNext.preview([]);
   };
   canvas.addEventListener('pointercancel', forget);
@@ -122,6 +123,11 @@ export function listenToPointer(app: App): void {
 const isBent = (app: App) => app.view.exaggeration > 0;
 
 function hover(app: App, x: number, y: number): void {
+  if (app.isToppled) {
+    app.point(undefined);
+    app.whereNext.preview([]);
+    return; // Nothing is where it is built.
+  }
   const hit = pick(app.robot, app.stage.ray(x, y));
   const isModule = hit?.what === 'module';
   const isThere = hit !== undefined && hit.what !== 'ground';

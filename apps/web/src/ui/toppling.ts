@@ -7,18 +7,20 @@ import type { Stage } from '../view/stage';
 import { Fall } from '../view/fall';
 import { Topple, type Motion } from '../view/topple';
 
-/** Lets the robot fall, over its edge or as its rigid body begins to, and puts it upright again. */
+/** Lets the robot fall, over its edge or as its rigid body begins to; it lies until it is stood up. */
 export class Toppling {
   private running?: { motion: Motion; begun: number };
 
   constructor(
     private readonly stage: Stage,
     private readonly ground: Ground,
+    private readonly tell: () => void,
   ) {
     stage.motions.push((now) => this.move(now));
   }
 
-  get isRunning(): boolean {
+  /** It falls or lies. */
+  get isToppled(): boolean {
     return this.running !== undefined;
   }
 
@@ -26,12 +28,14 @@ export class Toppling {
     if (topples(answer)) {
       this.running = { motion: motionOf(robot, answer), begun: performance.now() };
       this.stage.draw();
+      this.tell();
     }
   }
 
   /** Upright again. */
   stop(): void {
     this.running = undefined;
+    this.tell();
     this.stage.robot.matrixAutoUpdate = true;
     this.stage.robot.updateMatrix();
     this.ground.follow(undefined);
@@ -44,14 +48,10 @@ export class Toppling {
     }
     const { motion, begun } = this.running;
     const seconds = (now - begun) / 1000;
-    if (motion.isOver(seconds)) {
-      this.stop();
-      return false;
-    }
     this.stage.robot.matrixAutoUpdate = false;
     this.stage.robot.matrix.copy(motion.matrix(Math.max(seconds, 0)));
     this.ground.follow(this.stage.robot.matrix);
-    return true;
+    return !motion.isOver(seconds);
   }
 }
 

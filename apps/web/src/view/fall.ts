@@ -20,7 +20,6 @@ const STEPS = 60;
 const PROBES_MAX = 600;
 /** A node is this much less than half a pitch above the floor where its module lies on it tilted. */
 const DIP = 0.2;
-const REST_SECONDS = 1.1;
 /** A robot that turns by less than this, in its own size, slides. */
 const STILL = 1e-3;
 
@@ -51,7 +50,7 @@ export class Fall implements Motion {
   }
 
   isOver(seconds: number): boolean {
-    return seconds > this.duration + REST_SECONDS;
+    return seconds > this.duration;
   }
 
   matrix(seconds: number): Matrix4 {

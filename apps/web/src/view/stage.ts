@@ -4,6 +4,7 @@ import {
   Group,
   MOUSE,
   PerspectiveCamera,
+  Quaternion,
   Raycaster,
   Scene,
   TOUCH,
@@ -15,6 +16,8 @@ import {
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import type { Place } from '../model/lattice';
 
+const UPRIGHT = new Vector3(0, 0, 1);
+
 /** Moves something to where it is at a time; true while it goes on moving. */
 export type Motion = (now: number) => boolean;
 
@@ -24,7 +27,8 @@ export class Stage {
   /** What topples. */
   readonly robot = new Group();
   readonly camera = new PerspectiveCamera(32, 1, 0.1, 5000);
-  readonly controls: OrbitControls;
+  /** Another one wherever up is another direction. */
+  controls!: OrbitControls;
   private readonly renderer: WebGLRenderer;
   private readonly raycaster = new Raycaster();
   private frame = 0;
@@ -43,13 +47,8 @@ export class Stage {
     this.renderer.setClearAlpha(0);
     // Asking for errors waits for the compiler; the tests look at the picture instead.
     this.renderer.debug.checkShaderErrors = false;
-    this.camera.up.set(0, 0, 1);
-    this.controls = new OrbitControls(this.camera, canvas);
-    this.controls.mouseButtons = { LEFT: MOUSE.ROTATE, MIDDLE: MOUSE.DOLLY, RIGHT: MOUSE.PAN };
-    this.controls.touches = { ONE: TOUCH.ROTATE, TWO: TOUCH.DOLLY_PAN };
-    this.controls.maxPolarAngle = 0.62 * Math.PI;
-    this.controls.zoomToCursor = true;
-    this.controls.addEventListener('change', () => this.draw());
+    this.camera.up.copy(UPRIGHT);
+    this.control(new Vector3());
     this.scene.add(this.robot);
     new ResizeObserver(() => this.resize()).observe(canvas);
     this.resize();
@@ -105,6 +104,27 @@ export class Stage {
       : { x: ((at.x + 1) / 2) * clientWidth, y: ((1 - at.y) / 2) * clientHeight };
   }
 
+  /** The camera stands upright in the field of gravity, so that a floor is seen as steep as it is. */
+  setGravity(gravity: readonly number[]): void {
+    const up = new Vector3().fromArray(gravity).negate().normalize();
+    if (up.lengthSq() === 0 || up.distanceToSquared(this.camera.up) < 1e-12) {
+      return;
+    }
+    const { target } = this.controls;
+    const turn = new Quaternion().setFromUnitVectors(this.camera.up, up);
+    this.camera.position.sub(target).applyQuaternion(turn).add(target);
+    this.camera.up.copy(up);
+    this.controls.dispose();
+    this.control(target);
+    this.draw();
+  }
+
+  /** The camera's angle in plan, around z, in rad: 0 as seen from -y. */
+  get azimuth(): number {
+    const { x, y } = this.camera.position.clone().sub(this.controls.target);
+    return Math.atan2(x, -y);
+  }
+
   /** Looks at a box of nodes from the front right, from the same side if `keepsSide`. */
   fit(low: Place, high: Place, keepsSide = false): void {
     const middle = new Vector3().fromArray(low.map((value, k) => (value + high[k]) / 2));
@@ -113,7 +133,7 @@ export class Stage {
     const narrow = Math.min(half, Math.atan(Math.tan(half) * this.camera.aspect));
     const side = keepsSide
       ? this.camera.position.clone().sub(this.controls.target).normalize()
-      : new Vector3(0.62, -0.62, 0.48).normalize();
+      : new Vector3(0.62, -0.62, 0.48).normalize().applyQuaternion(new Quaternion().setFromUnitVectors(UPRIGHT, this.camera.up));
     this.controls.target.copy(middle);
     this.camera.position.copy(middle).addScaledVector(side, (1.02 * radius) / Math.sin(narrow));
     this.camera.near = Math.max(0.05, radius / 200);
@@ -130,6 +150,18 @@ export class Stage {
     return Array.from({ length: 8 }, (_, corner) =>
       this.project(new Vector3().fromArray(low.map((value, k) => ((corner >> k) & 1 ? high[k] + 0.5 : value - 0.5)))),
     ).every((at) => at && at.x >= 0 && at.x <= clientWidth && at.y >= 0 && at.y <= clientHeight);
+  }
+
+  /** Controls read once what is up. */
+  private control(target: Vector3): void {
+    this.controls = new OrbitControls(this.camera, this.canvas);
+    this.controls.mouseButtons = { LEFT: MOUSE.ROTATE, MIDDLE: MOUSE.DOLLY, RIGHT: MOUSE.PAN };
+    this.controls.touches = { ONE: TOUCH.ROTATE, TWO: TOUCH.DOLLY_PAN };
+    this.controls.maxPolarAngle = 0.62 * Math.PI;
+    this.controls.zoomToCursor = true;
+    this.controls.target.copy(target);
+    this.controls.addEventListener('change', () => this.draw());
+    this.controls.update();
   }
 
   private resize(): void {

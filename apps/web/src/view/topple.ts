@@ -10,6 +10,9 @@ export interface Motion {
   matrix(seconds: number): Matrix4;
 }
 
+/** Until it lies still on what it met. */
+const BOUNCE_SECONDS = 1.1;
+
 /** A robot that turns over an edge of its support polygon until it lies. Lengths in cells. */
 export class Topple implements Motion {
   private readonly origin: Vector3;
@@ -28,7 +31,7 @@ export class Topple implements Motion {
   }
 
   isOver(seconds: number): boolean {
-    return seconds > Math.sqrt((2 * this.angleMax) / this.acceleration) + 1.1;
+    return seconds > Math.sqrt((2 * this.angleMax) / this.acceleration) + BOUNCE_SECONDS;
   }
 
   matrix(seconds: number): Matrix4 {
