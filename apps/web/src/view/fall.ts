@@ -14,7 +14,7 @@ import type { Motion } from './topple';
 const TURN = 2.6;
 const SLIDE = 4;
 const ANGLE_MAX = Math.PI / 2;
-const WAY_MAX = 3;
+const WAY_MAX = 1.5;
 const STEPS = 60;
 /** Of the modules only so many are asked whether they meet something. */
 const PROBES_MAX = 600;
