@@ -58,7 +58,7 @@ bool agrees(const Assessment& assessment) {
                                          assessment.simplified.margin_mm == 0);
 }
 
-ContactModel contact_model(const model::Robot& robot, ContactLaw law, host::Ranks* ranks) {
+ContactModel contact_model(const model::Robot& robot, ContactLaw law, host::Ranks& ranks) {
   if (host::all(ranks, std::ranges::all_of(robot.facets(), &model::Facet::is_bonded))) {
     return ContactModel::kNone;
   }
@@ -77,7 +77,7 @@ std::span<const double> weak_springs(solver::EquilibriumSolver& solver, bool is_
 /// Whether the paper's law, of which Newton's method found no solution, has one that falls. With
 /// supports anywhere its answer counts beside the exact law's.
 bool falls_by_other_states(const model::Robot& robot, solver::EquilibriumSolver& solver,
-                           const model::RobotPart* part, const Assessment& assessment) {
+                           const Assessment& assessment) {
   if (assessment.stability_rule != StabilityRule::kContactForces || !assessment.model.is_settled ||
       !assessment.model.is_stable) {
     return false;
@@ -85,7 +85,7 @@ bool falls_by_other_states(const model::Robot& robot, solver::EquilibriumSolver&
   const auto found = solver.seek_settled(
       {.law = ContactLaw::kRegularised, .gamma = robot.material().contact_gamma});
   return std::ranges::any_of(found, [&](const Equilibrium& equilibrium) {
-    return !model_stability(robot, equilibrium, part).is_stable;
+    return !model_stability(robot, equilibrium).is_stable;
   });
 }
 
@@ -95,8 +95,8 @@ void find_equilibrium(const model::Robot& robot, solver::EquilibriumSolver& solv
                       const solver::EquilibriumOptions& options, Assessment& assessment) {
   assessment.equilibrium =
       solver.solve({.law = ContactLaw::kRegularised, .gamma = robot.material().contact_gamma});
-  assessment.model = model_stability(robot, assessment.equilibrium, options.part);
-  assessment.contact_model = contact_model(robot, ContactLaw::kRegularised, options.ranks());
+  assessment.model = model_stability(robot, assessment.equilibrium);
+  assessment.contact_model = contact_model(robot, ContactLaw::kRegularised, robot.ranks());
   if (assessment.equilibrium.outcome == Outcome::kTooLarge ||
       assessment.contact_model == ContactModel::kNone) {
     return;
@@ -117,10 +117,10 @@ void find_equilibrium(const model::Robot& robot, solver::EquilibriumSolver& solv
     Equilibrium exact = solver.solve({.law = ContactLaw::kUnilateral, .gamma = gamma});
     exact.begin_with(assessment.equilibrium);
     assessment.equilibrium = std::move(exact);
-    assessment.model = model_stability(robot, assessment.equilibrium, options.part);
+    assessment.model = model_stability(robot, assessment.equilibrium);
     assessment.contact_model = ContactModel::kUnilateral;
   }
-  assessment.model.falls_otherwise = falls_by_other_states(robot, solver, options.part, assessment);
+  assessment.model.falls_otherwise = falls_by_other_states(robot, solver, assessment);
 }
 
 /// Whether the equilibrium is one of the paper's law that stands.
@@ -135,8 +135,7 @@ void seek_others(const model::Robot& robot, solver::EquilibriumSolver& solver,
                  const solver::EquilibriumOptions& options, const LoadRange& answers,
                  Assessment& assessment) {
   solver.seek_others(assessment.equilibrium);
-  if (!assessment.equilibrium.others.empty() ||
-      has_pulling_facets(robot, assessment, options.part)) {
+  if (!assessment.equilibrium.others.empty() || has_pulling_facets(robot, assessment)) {
     const double gamma = weak_springs(solver, assessment.is_stable).front();
     compare_solutions(robot, solver, gamma, options, answers, assessment);
   }
@@ -167,15 +166,15 @@ Assessment conclude(const model::Robot& robot, Assessment assessment,
                     const solver::EquilibriumOptions& options) {
   if (assessment.equilibrium.outcome == Outcome::kSettled) {
     assess_connections(robot, options.thread_count, assessment);
-    assessment.gaps = find_open_gaps(robot, assessment.equilibrium, options.ranks());
-    assessment.lean = find_lean(robot, assessment, options.part);
+    assessment.gaps = find_open_gaps(robot, assessment.equilibrium, robot.ranks());
+    assessment.lean = find_lean(robot, assessment);
   }
-  decide(robot, options.part, assessment);
+  decide(robot, assessment);
   return assessment;
 }
 
 Assessment assess_once(const model::Robot& robot, const solver::EquilibriumOptions& options) {
-  Assessment assessment = assess_rigidly(robot, options.part, options.has_rigid_figures);
+  Assessment assessment = assess_rigidly(robot, options.has_rigid_figures);
   assessment.is_stable = assessment.is_stable || options.is_bonded;
   solve(robot, options, assessment);
   return conclude(robot, std::move(assessment), options);
@@ -195,7 +194,7 @@ bool is_near_limit(const Assessment& assessment) {
 std::vector<solver::EquilibriumOptions> finer_options(const model::Robot& robot,
                                                       const solver::EquilibriumOptions& options) {
   std::vector<solver::EquilibriumOptions> list;
-  const bool is_large = model::whole_module_count(robot, options.part) > kPreciseCountMax;
+  const bool is_large = model::whole_module_count(robot) > kPreciseCountMax;
   if (options.method != solver::Method::kDirect) {
     solver::EquilibriumOptions multigrid = options;
     multigrid.method = solver::Method::kMultigrid;
@@ -219,21 +218,19 @@ std::vector<solver::EquilibriumOptions> finer_options(const model::Robot& robot,
 
 }  // namespace
 
-bool has_pulling_facets(const model::Robot& robot, const Assessment& assessment,
-                        const model::RobotPart* part) {
+bool has_pulling_facets(const model::Robot& robot, const Assessment& assessment) {
   const auto& contact = assessment.equilibrium.contact;
   const bool is_any_not_stuck =
       std::ranges::any_of(contact, [&](const auto& state) { return state != mechanics::kStuck; });
-  return !is_on_flat_floor(robot, part) && host::any(model::ranks_of(part), is_any_not_stuck);
+  return !is_on_flat_floor(robot) && host::any(robot.ranks(), is_any_not_stuck);
 }
 
-Assessment assess_rigidly(const model::Robot& robot, const model::RobotPart* part,
-                          bool has_figures) {
+Assessment assess_rigidly(const model::Robot& robot, bool has_figures) {
   Assessment assessment;
-  assessment.simplified = assess_rigid_body(robot, part);
-  assessment.stability_rule = stability_rule(robot, part);
+  assessment.simplified = assess_rigid_body(robot);
+  assessment.stability_rule = stability_rule(robot);
   assessment.rigid =
-      rigid_stability(robot, assessment.stability_rule, assessment.simplified, part, has_figures);
+      rigid_stability(robot, assessment.stability_rule, assessment.simplified, has_figures);
   assessment.is_stable = assessment.rigid.holds();
   return assessment;
 }
@@ -271,8 +268,8 @@ Assessment assess_equilibrium(const model::Robot& robot, Equilibrium equilibrium
                               int thread_count) {
   Assessment assessment = assess_rigidly(robot);
   assessment.equilibrium = std::move(equilibrium);
-  assessment.model = model_stability(robot, assessment.equilibrium, nullptr);
-  assessment.contact_model = contact_model(robot, assessment.equilibrium.law, nullptr);
+  assessment.model = model_stability(robot, assessment.equilibrium);
+  assessment.contact_model = contact_model(robot, assessment.equilibrium.law, robot.ranks());
   const solver::EquilibriumOptions options = {.thread_count = thread_count};
   if (assessment.equilibrium.outcome == Outcome::kSettled) {
     assess_loads(robot, options, assessment);

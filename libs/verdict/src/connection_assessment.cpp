@@ -284,7 +284,7 @@ double weak_spring_error(const model::Robot& robot, const Equilibrium& equilibri
 
 LoadRange assess_loads(const model::Robot& robot, const solver::EquilibriumOptions& options,
                        Assessment& assessment) {
-  if (host::all(options.ranks(), robot.connections().empty())) {
+  if (host::all(robot.ranks(), robot.connections().empty())) {
     return {};
   }
   host::Team team(options.thread_count, robot.connections().size());
@@ -292,8 +292,8 @@ LoadRange assess_loads(const model::Robot& robot, const solver::EquilibriumOptio
   if (is_alternative_spent(assessment.equilibrium)) {
     assessment.equilibrium.alternative = std::vector<base::Vec6<double>>();
   }
-  if (options.part != nullptr) {
-    assessment.whole = add_ranks(robot, *options.ranks(), loads);
+  if (robot.ranks().is_shared()) {
+    assessment.whole = add_ranks(robot, robot.ranks(), loads);
   }
   assessment.load_ratio_change = loads.change;
   const double margin = error_margin(robot, options, assessment.equilibrium, loads);
@@ -325,7 +325,7 @@ void assess_connections(const model::Robot& robot, int thread_count, Assessment&
 }
 
 std::optional<OpenGaps> find_open_gaps(const model::Robot& robot, const Equilibrium& equilibrium,
-                                       host::Ranks* ranks) {
+                                       host::Ranks& ranks) {
   const bool is_limited = std::ranges::any_of(
       robot.connectors(), [](const auto& law) { return std::isfinite(law.gap_limit_mm); });
   if (!is_limited) {
@@ -347,9 +347,7 @@ std::optional<OpenGaps> find_open_gaps(const model::Robot& robot, const Equilibr
       gaps.ends = model::ends(robot, i);
     }
   }
-  if (ranks != nullptr) {
-    gaps = widest_of_all(*ranks, gaps);
-  }
+  gaps = widest_of_all(ranks, gaps);
   return gaps.count > 0 ? std::optional(gaps) : std::nullopt;
 }
 

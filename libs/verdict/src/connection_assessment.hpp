@@ -33,6 +33,6 @@ void assess_connections(const model::Robot& robot, int thread_count, Assessment&
 
 /// The gaps that are too wide; none if no connection has a limit, or none is exceeded.
 std::optional<OpenGaps> find_open_gaps(const model::Robot& robot,
-                                       const solver::Equilibrium& equilibrium, host::Ranks* ranks);
+                                       const solver::Equilibrium& equilibrium, host::Ranks& ranks);
 
 }  // namespace holdfast::verdict

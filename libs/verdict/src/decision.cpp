@@ -95,9 +95,8 @@ Reason breaking_reason(const Assessment& assessment) {
           .cells = worst_cells(assessment)};
 }
 
-void decide_stable(const model::Robot& robot, const model::RobotPart* part,
-                   Assessment& assessment) {
-  const std::size_t count = model::whole_module_count(robot, part);
+void decide_stable(const model::Robot& robot, Assessment& assessment) {
+  const std::size_t count = model::whole_module_count(robot);
   auto obstacle = find_obstacle(count, assessment.equilibrium);
   if (!obstacle) {
     obstacle = find_doubt(assessment);
@@ -145,24 +144,23 @@ void add_contact_remarks(Assessment& assessment) {
 }
 
 /// The cell of a slipping module, which may be another rank's.
-std::vector<base::Cell> slip_cells(const model::Robot& robot, const model::RobotPart* part,
-                                   const Slip& slip) {
-  if (part == nullptr) {
+std::vector<base::Cell> slip_cells(const model::Robot& robot, const Slip& slip) {
+  if (!robot.ranks().is_shared()) {
     return {};
   }
   const base::Cell mine =
-      part->ranks->rank() == slip.rank ? robot.modules()[slip.module].cell : base::Cell{};
-  return {host::gather(*part->ranks, std::span<const base::Cell>(&mine, 1))[base::at(slip.rank)]};
+      robot.ranks().rank() == slip.rank ? robot.modules()[slip.module].cell : base::Cell{};
+  return {host::gather(robot.ranks(), std::span<const base::Cell>(&mine, 1))[base::at(slip.rank)]};
 }
 
 /// Of the answers with supports anywhere neither is enough to be safe. Without equilibrium the
 /// model has none.
-void heed_model(const model::Robot& robot, const model::RobotPart* part, Assessment& assessment) {
+void heed_model(const model::Robot& robot, Assessment& assessment) {
   if (!assessment.is_stable) {
     return;
   }
   auto slip = assessment.equilibrium.outcome == Outcome::kSettled
-                  ? find_slip(robot, assessment.equilibrium, part)
+                  ? find_slip(robot, assessment.equilibrium)
                   : std::nullopt;
   if (!slip) {
     slip = assessment.model.slip_otherwise;
@@ -180,7 +178,7 @@ void heed_model(const model::Robot& robot, const model::RobotPart* part, Assessm
     assessment.reasons.push_back(
         {.code = ReasonCode::kMaySlip,
          .numbers = {static_cast<double>(slip->module), slip->ratio, slip->friction},
-         .cells = slip_cells(robot, part, *slip)});
+         .cells = slip_cells(robot, *slip)});
   }
 }
 
@@ -204,22 +202,21 @@ void decide_falling(Assessment& assessment) {
 }
 
 /// The ends of the connection that opens most, where its index is another rank's.
-std::vector<base::Cell> gap_cells(const OpenGaps& gaps, const model::RobotPart* part) {
-  if (part == nullptr) {
+std::vector<base::Cell> gap_cells(const model::Robot& robot, const OpenGaps& gaps) {
+  if (!robot.ranks().is_shared()) {
     return {};
   }
   return {gaps.ends.begin(), gaps.ends.end()};
 }
 
 /// What is no reason for the verdict, but belongs to its loads.
-void add_load_remarks(const model::Robot& robot, const model::RobotPart* part,
-                      Assessment& assessment) {
+void add_load_remarks(const model::Robot& robot, Assessment& assessment) {
   if (assessment.gaps) {
     assessment.reasons.push_back({.code = ReasonCode::kGapsOpen,
                                   .numbers = {static_cast<double>(assessment.gaps->count),
                                               static_cast<double>(assessment.gaps->worst),
                                               assessment.gaps->gap_mm, assessment.gaps->limit_mm},
-                                  .cells = gap_cells(*assessment.gaps, part)});
+                                  .cells = gap_cells(robot, *assessment.gaps)});
   }
   const double margin = assessment.simplified.margin_mm.value_or(0);
   if (assessment.lean && assessment.lean->margin_mm > 0 &&
@@ -228,7 +225,7 @@ void add_load_remarks(const model::Robot& robot, const model::RobotPart* part,
         {.code = ReasonCode::kMassMoves,
          .numbers = {assessment.lean->shift_mm, margin, assessment.lean->margin_mm}});
   }
-  const bool has_payloads = host::any(model::ranks_of(part), robot.has_payloads());
+  const bool has_payloads = host::any(robot.ranks(), robot.has_payloads());
   if (has_payloads && assessment.worst) {
     assessment.reasons.push_back({.code = ReasonCode::kLoadsTogether});
   }
@@ -236,17 +233,17 @@ void add_load_remarks(const model::Robot& robot, const model::RobotPart* part,
 
 }  // namespace
 
-void decide(const model::Robot& robot, const model::RobotPart* part, Assessment& assessment) {
+void decide(const model::Robot& robot, Assessment& assessment) {
   if (assessment.contact_model != ContactModel::kBonded) {
-    heed_model(robot, part, assessment);
+    heed_model(robot, assessment);
   }
   if (assessment.is_stable) {
-    decide_stable(robot, part, assessment);
+    decide_stable(robot, assessment);
   } else if (assessment.reasons.empty()) {
     decide_falling(assessment);
   }
   add_contact_remarks(assessment);
-  add_load_remarks(robot, part, assessment);
+  add_load_remarks(robot, assessment);
 }
 
 }  // namespace holdfast::verdict

@@ -7,6 +7,6 @@
 namespace holdfast::verdict {
 
 /// Verdict and reasons, from an assessment that has all else.
-void decide(const model::Robot& robot, const model::RobotPart* part, Assessment& assessment);
+void decide(const model::Robot& robot, Assessment& assessment);
 
 }  // namespace holdfast::verdict

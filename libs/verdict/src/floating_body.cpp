@@ -64,16 +64,16 @@ void add_corners(const std::array<double, 3>& centre, double half_width,
 
 }  // namespace
 
-FloatingBody body_of(const model::Robot& robot, const model::RobotPart* part) {
-  host::Ranks* const ranks = model::ranks_of(part);
-  const std::size_t count = model::own_module_count(robot, part);
+FloatingBody body_of(const model::Robot& robot) {
+  host::Ranks& ranks = robot.ranks();
+  const std::size_t count = robot.own_count();
   FloatingBody body{.is_held = host::any(ranks, robot.fixed_count() > 0) ||
                                host::any(ranks, robot.has_bonded_facets()),
-                    .is_flat = is_on_flat_floor(robot, part),
+                    .is_flat = is_on_flat_floor(robot),
                     .foot_half_width_mm = robot.foot_half_width_mm(),
                     .tie_mm = kMarginTie * robot.material().pitch_mm};
   const base::NodePlaces node_mm(robot.lattice(), robot.material().pitch_mm);
-  body.origin_mm = model::common_node_mm(robot, part);
+  body.origin_mm = model::common_node_mm(robot);
   for (std::size_t i = 0; i < count; ++i) {
     add_module(body, node_mm(robot.modules()[i].cell), robot.mass(i), false);
   }
@@ -95,8 +95,8 @@ FloatingBody body_of(const model::Robot& robot, const model::RobotPart* part) {
                   corners);
     }
     body.polygon = convex_hull(std::move(corners), body.tie_mm);
-    if (ranks != nullptr) {
-      body.polygon = convex_hull(host::gather<PlanPoint>(*ranks, body.polygon), body.tie_mm);
+    if (ranks.is_shared()) {
+      body.polygon = convex_hull(host::gather<PlanPoint>(ranks, body.polygon), body.tie_mm);
     }
   }
   return body;

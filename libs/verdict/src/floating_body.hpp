@@ -23,7 +23,7 @@ struct FloatingBody {
   std::vector<PlanPoint> polygon = {};  ///< Counter-clockwise.
 };
 
-FloatingBody body_of(const model::Robot& robot, const model::RobotPart* part = nullptr);
+FloatingBody body_of(const model::Robot& robot);
 
 /// Adds a module whose node is there.
 void add_module(FloatingBody& body, const std::array<double, 3>& node_mm, double mass_kg,

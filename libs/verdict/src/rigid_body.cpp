@@ -72,20 +72,18 @@ void add_row(const Row& more, std::map<std::int32_t, Row>& rows) {
 
 /// Corners of the feet, as far as they can be corners of the polygon: of every row along x those at
 /// its two ends.
-std::vector<Point> support_corners(const model::Robot& robot, host::Ranks* ranks) {
+std::vector<Point> support_corners(const model::Robot& robot, host::Ranks& ranks) {
   std::map<std::int32_t, Row> rows;
   for (const model::Facet& facet : robot.facets()) {
     const auto [x, y, z] = robot.modules()[base::at(facet.module)].cell;
     add_row({.y = y, .first = x, .last = x}, rows);
   }
-  if (ranks != nullptr) {
-    std::vector<Row> mine;
-    for (const auto& [y, row] : rows) {
-      mine.push_back(row);
-    }
-    for (const Row& row : host::gather<Row>(*ranks, mine)) {
-      add_row(row, rows);
-    }
+  std::vector<Row> mine;
+  for (const auto& [y, row] : rows) {
+    mine.push_back(row);
+  }
+  for (const Row& row : host::gather<Row>(ranks, mine)) {
+    add_row(row, rows);
   }
   std::vector<Point> corners;
   for (const auto& [y, row] : rows) {
@@ -158,18 +156,15 @@ struct CubeSums {
   std::int64_t count = 0;
 };
 
-CubeSums cube_sums(const model::Robot& robot, const model::RobotPart* part) {
-  const std::size_t count = model::own_module_count(robot, part);
+CubeSums cube_sums(const model::Robot& robot) {
+  const std::size_t count = robot.own_count();
   CubeSums mine{.count = static_cast<std::int64_t>(count)};
   for (const model::Module& module : robot.modules().first(count)) {
     mine.x += 2 * std::int64_t{module.cell.x};
     mine.y += 2 * std::int64_t{module.cell.y};
   }
-  if (part == nullptr) {
-    return mine;
-  }
   CubeSums all;
-  for (const CubeSums& one : host::gather(*part->ranks, std::span<const CubeSums>(&mine, 1))) {
+  for (const CubeSums& one : host::gather(robot.ranks(), std::span<const CubeSums>(&mine, 1))) {
     all.x += one.x;
     all.y += one.y;
     all.count += one.count;
@@ -177,17 +172,17 @@ CubeSums cube_sums(const model::Robot& robot, const model::RobotPart* part) {
   return all;
 }
 
-Cubes cubes_of(const model::Robot& robot, const model::RobotPart* part = nullptr) {
-  const CubeSums sums = cube_sums(robot, part);
+Cubes cubes_of(const model::Robot& robot) {
+  const CubeSums sums = cube_sums(robot);
   const model::Material& material = robot.material();
   Cubes cubes{.measure = Measure(material.pitch_mm, material.facet_mm),
               .pitch_mm = material.pitch_mm,
               .facet_mm = material.facet_mm,
-              .is_fixed = host::any(model::ranks_of(part), robot.fixed_count() > 0),
+              .is_fixed = host::any(robot.ranks(), robot.fixed_count() > 0),
               .count = sums.count};
   cubes.mass.x.pitches = sums.x;
   cubes.mass.y.pitches = sums.y;
-  cubes.hull = convex_hull(support_corners(robot, model::ranks_of(part)), cubes.measure);
+  cubes.hull = convex_hull(support_corners(robot, robot.ranks()), cubes.measure);
   return cubes;
 }
 
@@ -211,19 +206,19 @@ RigidBody exact_body(const Cubes& cubes) {
 }
 
 /// Whether exact_body() decides.
-bool is_exact(const model::Robot& robot, const model::RobotPart* part = nullptr) {
-  host::Ranks* const ranks = model::ranks_of(part);
+bool is_exact(const model::Robot& robot) {
+  host::Ranks& ranks = robot.ranks();
   const double mass_max = host::max(ranks, robot.mass(0));  // All ranks ask.
   const bool is_alike = robot.is_uniform() && robot.mass(0) == mass_max;
   const bool is_plain = robot.lattice() == base::kCubic && is_alike && robot.carried().empty();
   const bool has_facets = host::any(ranks, !robot.facets().empty());
-  return host::all(ranks, is_plain) && (!has_facets || is_on_flat_floor(robot, part));
+  return host::all(ranks, is_plain) && (!has_facets || is_on_flat_floor(robot));
 }
 
 }  // namespace
 
-bool is_on_flat_floor(const model::Robot& robot, const model::RobotPart* part) {
-  host::Ranks* const ranks = model::ranks_of(part);
+bool is_on_flat_floor(const model::Robot& robot) {
+  host::Ranks& ranks = robot.ranks();
   const auto& [x, y, z] = robot.gravity();
   const bool has_facets = host::any(ranks, !robot.facets().empty());
   const bool has_payloads = host::any(ranks, robot.has_payloads());
@@ -243,9 +238,8 @@ bool is_on_flat_floor(const model::Robot& robot, const model::RobotPart* part) {
                    }));
 }
 
-RigidBody assess_rigid_body(const model::Robot& robot, const model::RobotPart* part) {
-  return is_exact(robot, part) ? exact_body(cubes_of(robot, part))
-                               : floating_body(body_of(robot, part));
+RigidBody assess_rigid_body(const model::Robot& robot) {
+  return is_exact(robot) ? exact_body(cubes_of(robot)) : floating_body(body_of(robot));
 }
 
 struct GrowingRigidBody::Exact {

@@ -17,7 +17,7 @@ namespace {
 using Displacements = std::vector<base::Vec6<double>>;
 
 /// Largest load ratio, of all ranks' parts; NaN if one is. `low` as of a Solution.
-double load_ratio_max(const model::Robot& robot, host::Ranks* ranks, const Displacements& u,
+double load_ratio_max(const model::Robot& robot, host::Ranks& ranks, const Displacements& u,
                       const Displacements& low) {
   const ConnectionLaws laws(robot);
   double largest = -std::numeric_limits<double>::infinity();
@@ -41,7 +41,7 @@ void widen(LoadRange& range, double ratio) {
 
 /// Takes in what a solution and its alternative say. Beside 106 bits the alternative says something
 /// only if feet are ambiguous.
-void widen(LoadRange& range, const model::Robot& robot, host::Ranks* ranks,
+void widen(LoadRange& range, const model::Robot& robot, host::Ranks& ranks,
            const solver::Solution& solution, bool is_ambiguous = false) {
   widen(range, load_ratio_max(robot, ranks, solution.displacement, solution.displacement_low));
   if (solution.displacement_low.empty() || is_ambiguous) {
@@ -65,7 +65,7 @@ bool is_on_side(const LoadRange& range, double error, bool is_broken) {
 void compare_solutions(const model::Robot& robot, solver::EquilibriumSolver& solver, double gamma,
                        const solver::EquilibriumOptions& options, const LoadRange& answers,
                        Assessment& assessment) {
-  host::Ranks* const ranks = options.ranks();
+  host::Ranks& ranks = robot.ranks();
   if (host::all(ranks, robot.connections().empty())) {
     return;
   }
@@ -82,12 +82,12 @@ void compare_solutions(const model::Robot& robot, solver::EquilibriumSolver& sol
   settled.iteration_count += exact.iteration_count;
   const bool is_held_by_contact = assessment.stability_rule == StabilityRule::kContactForces;
   const auto does_fall = [&](const solver::Solution& one) {
-    return is_held_by_contact && !do_states_hold(robot, one.contact, options.part);
+    return is_held_by_contact && !do_states_hold(robot, one.contact);
   };
   assessment.model.falls_otherwise = std::ranges::any_of(settled.others, does_fall);
   if (exact.outcome == solver::Outcome::kSettled) {
     assessment.model.falls_otherwise |= does_fall(exact);
-    assessment.model.slip_otherwise = find_slip(robot, exact, options.part);
+    assessment.model.slip_otherwise = find_slip(robot, exact);
     widen(several.unilateral.emplace(kEmpty), robot, ranks, exact, exact.open_but_held_count > 0);
   }
   const bool is_multigrid =
