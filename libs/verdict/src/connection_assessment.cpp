@@ -139,7 +139,7 @@ struct RankLoads {
 };
 
 /// Takes in what all ranks' connections say together; which are broken stays each rank's own.
-WholeLoads add_ranks(const model::Robot& robot, host::Ranks& ranks, Loads& loads) {
+WholeLoads add_ranks(const model::Robot& robot, Loads& loads) {
   const std::size_t count = robot.connections().size();
   const RankLoads mine = {
       .range = loads.range,
@@ -152,7 +152,7 @@ WholeLoads add_ranks(const model::Robot& robot, host::Ranks& ranks, Loads& loads
       .broken_count = loads.broken.size()};
   WholeLoads whole;
   loads.ratio_max = -std::numeric_limits<double>::infinity();
-  for (const RankLoads& one : host::gather(ranks, std::span<const RankLoads>(&mine, 1))) {
+  for (const RankLoads& one : host::gather(robot.ranks(), std::span<const RankLoads>(&mine, 1))) {
     loads.range = {.low = max_or_nan(loads.range.low, one.range.low),
                    .high = max_or_nan(loads.range.high, one.range.high)};
     loads.change = std::max(loads.change, one.change);
@@ -282,31 +282,31 @@ double weak_spring_error(const model::Robot& robot, const Equilibrium& equilibri
               : kEnergyFactor * model::load_ratio_per_energy_norm(robot) * energy);
 }
 
-LoadRange assess_loads(const model::Robot& robot, const solver::EquilibriumOptions& options,
+LoadRange assess_loads(const Situation& here, const solver::EquilibriumOptions& options,
                        Assessment& assessment) {
-  if (host::all(robot.ranks(), robot.connections().empty())) {
+  if (!here.has_connections) {
     return {};
   }
+  const model::Robot& robot = here.robot;
   host::Team team(options.thread_count, robot.connections().size());
   Loads loads = add_up(robot, team, assessment);
   if (is_alternative_spent(assessment.equilibrium)) {
     assessment.equilibrium.alternative = std::vector<base::Vec6<double>>();
   }
   if (robot.ranks().is_shared()) {
-    assessment.whole = add_ranks(robot, robot.ranks(), loads);
+    assessment.whole = add_ranks(robot, loads);
   }
   assessment.load_ratio_change = loads.change;
   const double margin = error_margin(robot, options, assessment.equilibrium, loads);
   assessment.load_ratio_range = {.low = loads.range.low - margin,
                                  .high = loads.range.high + margin};
   assessment.broken = std::move(loads.broken);
-  if (is_nan(loads.range)) {
-    return between_answers(loads);
-  }
-  assessment.load_ratio_max = loads.ratio_max;
-  if (is_pulled_apart(loads.ratio_max, assessment)) {
-    assessment.worst = loads.worst;
-    assessment.weight_factor = 1 / loads.ratio_max;
+  if (!is_nan(loads.range)) {
+    assessment.load_ratio_max = loads.ratio_max;
+    if (is_pulled_apart(loads.ratio_max, assessment)) {
+      assessment.worst = loads.worst;
+      assessment.weight_factor = 1 / loads.ratio_max;
+    }
   }
   return between_answers(loads);
 }
@@ -324,8 +324,7 @@ void assess_connections(const model::Robot& robot, int thread_count, Assessment&
                            [&](std::size_t i) { return assessment.connections[i].load_ratio; });
 }
 
-std::optional<OpenGaps> find_open_gaps(const model::Robot& robot, const Equilibrium& equilibrium,
-                                       host::Ranks& ranks) {
+std::optional<OpenGaps> find_open_gaps(const model::Robot& robot, const Equilibrium& equilibrium) {
   const bool is_limited = std::ranges::any_of(
       robot.connectors(), [](const auto& law) { return std::isfinite(law.gap_limit_mm); });
   if (!is_limited) {
@@ -347,7 +346,7 @@ std::optional<OpenGaps> find_open_gaps(const model::Robot& robot, const Equilibr
       gaps.ends = model::ends(robot, i);
     }
   }
-  gaps = widest_of_all(ranks, gaps);
+  gaps = widest_of_all(robot.ranks(), gaps);
   return gaps.count > 0 ? std::optional(gaps) : std::nullopt;
 }
 

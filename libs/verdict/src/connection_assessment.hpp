@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "holdfast/verdict/assessment.hpp"
+#include "situation.hpp"
 
 /// What an equilibrium says of the connections (Sec. III-D).
 namespace holdfast::verdict {
@@ -24,7 +24,7 @@ double weak_spring_error(const model::Robot& robot, const solver::Equilibrium& e
 /// largest load ratio, its range and what breaks. Returns what lies between the largest load ratios
 /// of the equilibrium's two answers. Multigrid's second one, unless feet are ambiguous, is given
 /// back: it is for the range alone.
-LoadRange assess_loads(const model::Robot& robot, const solver::EquilibriumOptions& options,
+LoadRange assess_loads(const Situation& here, const solver::EquilibriumOptions& options,
                        Assessment& assessment);
 
 /// After assess_loads(): fills in every connection's result, unless they are there, and sorts those
@@ -33,6 +33,6 @@ void assess_connections(const model::Robot& robot, int thread_count, Assessment&
 
 /// The gaps that are too wide; none if no connection has a limit, or none is exceeded.
 std::optional<OpenGaps> find_open_gaps(const model::Robot& robot,
-                                       const solver::Equilibrium& equilibrium, host::Ranks& ranks);
+                                       const solver::Equilibrium& equilibrium);
 
 }  // namespace holdfast::verdict

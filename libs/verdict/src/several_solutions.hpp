@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "holdfast/verdict/assessment.hpp"
+#include "situation.hpp"
 
 /// What to say where the paper's contact law has several solutions (theory.md).
 namespace holdfast::verdict {
@@ -23,7 +23,7 @@ inline constexpr double kMultigridError = 1e-4;
 /// lies between its two `answers`, and from the exact law's answer, with weak springs of `gamma`,
 /// if multigrid's tolerance is so many times the usual; and in `assessment.model` whether by any of
 /// them it falls or slips.
-void compare_solutions(const model::Robot& robot, solver::EquilibriumSolver& solver, double gamma,
+void compare_solutions(const Situation& here, solver::EquilibriumSolver& solver, double gamma,
                        const solver::EquilibriumOptions& options, const LoadRange& answers,
                        Assessment& assessment);
 

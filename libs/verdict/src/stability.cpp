@@ -218,37 +218,30 @@ struct RankedSlip {
 
 }  // namespace
 
-StabilityRule stability_rule(const model::Robot& robot) {
-  if (host::any(robot.ranks(), robot.fixed_count() > 0 || robot.has_bonded_facets())) {
-    return StabilityRule::kHeld;
+limit::RigidStability rigid_stability(const Situation& here, const RigidBody& body,
+                                      bool has_figures) {
+  switch (here.rule) {
+    case StabilityRule::kHeld:
+      break;
+    case StabilityRule::kPolygon:
+      return floor_stability(here.robot, body, has_figures);
+    case StabilityRule::kContactForces:
+      return limit::assess_rigid(here.robot, has_figures);
   }
-  return is_on_flat_floor(robot) ? StabilityRule::kPolygon : StabilityRule::kContactForces;
+  return {.answer = limit::RigidAnswer::kHolds};
 }
 
-limit::RigidStability rigid_stability(const model::Robot& robot, StabilityRule rule,
-                                      const RigidBody& body, bool has_figures) {
-  if (rule == StabilityRule::kHeld) {
-    return {.answer = limit::RigidAnswer::kHolds};
-  }
-  if (rule == StabilityRule::kPolygon) {
-    return floor_stability(robot, body, has_figures);
-  }
-  return limit::assess_rigid(robot, has_figures);
+ModelStability model_stability(const Situation& here, const Equilibrium& equilibrium) {
+  const bool is_settled = equilibrium.outcome == solver::Outcome::kSettled;
+  return {.is_stable = is_settled && (here.rule == StabilityRule::kHeld ||
+                                      do_states_hold(here, equilibrium.contact)),
+          .is_settled = is_settled};
 }
 
-ModelStability model_stability(const model::Robot& robot, const Equilibrium& equilibrium) {
-  if (equilibrium.outcome != solver::Outcome::kSettled) {
-    return {};
-  }
-  if (stability_rule(robot) == StabilityRule::kHeld) {
-    return {.is_stable = true, .is_settled = true};
-  }
-  return {.is_stable = do_states_hold(robot, equilibrium.contact), .is_settled = true};
-}
-
-bool do_states_hold(const model::Robot& robot, std::span<const mechanics::ContactState> contact) {
-  const bool is_cubes_floor = robot.lattice() == base::kCubic && is_on_flat_floor(robot);
-  return is_cubes_floor ? holds_by_cube_corners(robot, contact) : holds_by_corners(robot, contact);
+bool do_states_hold(const Situation& here, std::span<const mechanics::ContactState> contact) {
+  return here.robot.lattice() == base::kCubic && here.is_on_flat_floor
+             ? holds_by_cube_corners(here.robot, contact)
+             : holds_by_corners(here.robot, contact);
 }
 
 std::optional<Lean> find_lean(const model::Robot& robot, const Assessment& assessment) {
