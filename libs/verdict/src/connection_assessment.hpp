@@ -9,6 +9,9 @@
 /// What an equilibrium says of the connections (Sec. III-D).
 namespace holdfast::verdict {
 
+/// What load ratios may be off by rounding alone, as a share of the largest or of 1.
+inline constexpr double kRounding = 1e-12;
+
 /// What multigrid's load ratios may be off by, as a share of the largest or of 1: what it promises
 /// at this tolerance, or what very soft beams take of it.
 double multigrid_error(const model::Robot& robot, const solver::EquilibriumOptions& options);
