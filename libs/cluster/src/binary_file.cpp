@@ -46,7 +46,7 @@ class SharedFile {
 
   /// Reads what this rank asks for, all ranks at once. Returns whether all have got it all.
   bool read_all(std::uint64_t begin, std::span<std::byte> bytes) {
-    return host::all(&ranks_, read(begin, bytes, MPI_File_read_at_all));
+    return host::all(ranks_, read(begin, bytes, MPI_File_read_at_all));
   }
 
   /// The same by this rank alone.
@@ -134,13 +134,13 @@ bool is_binary_file(PetscRanks& ranks, const std::string& file) {
     std::ifstream(file, std::ios::binary).read(magic.data(), magic.size());
     is_binary = std::string_view(magic.data(), magic.size()) == io::kBinaryMagic;
   }
-  return host::any(&ranks, is_binary);
+  return host::any(ranks, is_binary);
 }
 
 base::Result<std::pair<SharedText, std::vector<Record>>> read_binary_file(
     PetscRanks& ranks, const std::string& path, const io::ReadOptions& options) {
   SharedFile file(ranks, path);
-  if (!host::all(&ranks, file.is_open())) {
+  if (!host::all(ranks, file.is_open())) {
     return base::Error{.code = base::ErrorCode::kUnreadable, .message = "cannot be opened"};
   }
   const std::uint64_t size = file.size();

@@ -32,7 +32,7 @@ std::vector<std::array<base::Cell, 2>> broken_of_all(const Part& part,
     mine.push_back({.load_ratio = assessment.connections[connection].load_ratio,
                     .ends = model::ends(part.robot, connection)});
   }
-  auto all = host::gather<BrokenConnection>(*part.share.ranks, mine);
+  auto all = host::gather<BrokenConnection>(part.robot.ranks(), mine);
   std::ranges::stable_sort(all, std::ranges::greater(), &BrokenConnection::load_ratio);
   std::vector<std::array<base::Cell, 2>> ends;
   for (std::size_t i = 0; i < std::min(kBrokenMax, all.size()); ++i) {
@@ -55,9 +55,8 @@ Checked check(const Part& part, const CheckOptions& options) {
                                                     .method = solver::Method::kMultigrid,
                                                     .is_bonded = options.is_bonded,
                                                     .thread_count = options.thread_count,
-                                                    .part = &part.share,
                                                     .journal = options.journal});
-  checked.seconds = part.share.ranks->max(MPI_Wtime() - start);
+  checked.seconds = part.robot.ranks().max(MPI_Wtime() - start);
   checked.broken = broken_of_all(part, checked.assessment);
   return checked;
 }
@@ -108,7 +107,7 @@ std::string report_text(const Structure& structure, const Part& part, const Chec
                       verdict::name(assessment.contact_model),
                       host::counted(assessment.equilibrium.steps, "linear solve"),
                       host::counted(assessment.equilibrium.iteration_count, "iteration"),
-                      checked.seconds, host::counted(part.share.ranks->count(), "rank"));
+                      checked.seconds, host::counted(part.robot.ranks().count(), "rank"));
   for (const std::string& warning : structure.warnings) {
     text += fmt::format("  note        {}\n", warning);
   }

@@ -104,7 +104,7 @@ class SharedOutput {
     is_good_ = MPI_File_open(ranks.comm(), unfinished_.c_str(), MPI_MODE_CREATE | MPI_MODE_WRONLY,
                              MPI_INFO_NULL, &file_) == MPI_SUCCESS;
     is_open_ = is_good_;
-    is_good_ = host::all(&ranks_, is_good_) && MPI_File_set_size(file_, 0) == MPI_SUCCESS;
+    is_good_ = host::all(ranks_, is_good_) && MPI_File_set_size(file_, 0) == MPI_SUCCESS;
   }
 
   SharedOutput(const SharedOutput&) = delete;
@@ -135,7 +135,7 @@ class SharedOutput {
 
   /// Whether all ranks have written all and the file is in its place.
   bool finish() {
-    is_good_ = host::all(&ranks_, is_good_);
+    is_good_ = host::all(ranks_, is_good_);
     if (!is_good_) {
       return false;
     }
@@ -144,7 +144,7 @@ class SharedOutput {
     if (ranks_.rank() == 0) {
       is_good_ = is_good_ && std::rename(unfinished_.c_str(), path_.c_str()) == 0;
     }
-    return host::all(&ranks_, is_good_);
+    return host::all(ranks_, is_good_);
   }
 
  private:

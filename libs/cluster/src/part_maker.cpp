@@ -95,11 +95,11 @@ class Neighbourhood {
   }
 
   /// Copies of what straight runs that begin here go on to, as far as their other ends. `robot` is
-  /// this rank's part with `copies`, and `axes` are its modules' passage_axes().
+  /// this rank's part, and `axes` are its modules' passage_axes().
   std::vector<host::Copy> follow_runs(const model::Robot& robot,
-                                      const std::vector<host::Copy>& copies,
                                       const std::vector<std::int8_t>& axes,
                                       std::vector<Record>& records) {
+    const std::vector<host::Copy>& copies = robot.part().copies;
     std::vector<host::Copy> all = copies;
     std::set<base::Cell> known;
     std::vector<Foremost> foremost;
@@ -113,7 +113,7 @@ class Neighbourhood {
         }
       }
     }
-    while (host::any(&ranks_, !foremost.empty())) {
+    while (host::any(ranks_, !foremost.empty())) {
       foremost = step(robot, copies, axes, foremost, known, all, records);
     }
     return all;
@@ -318,19 +318,20 @@ ModuleCounts count_modules(PetscRanks& ranks, const Structure& structure,
                            const model::Robot& robot) {
   const auto count = [&](std::uint32_t flag) {
     return host::total(
-        &ranks,
+        ranks,
         static_cast<std::size_t>(std::ranges::count_if(
             structure.records, [&](const Record& record) { return (record.flags & flag) != 0; })));
   };
-  return {.all = host::total(&ranks, structure.records.size()),
+  return {.all = host::total(ranks, structure.records.size()),
           .planned = count(Record::kPlanned),
           .fixed = count(Record::kFixed),
-          .facets = host::total(&ranks, robot.facets().size())};
+          .facets = host::total(ranks, robot.facets().size())};
 }
 
 /// The robot of own modules and copies.
 base::Result<model::Robot> robot_of(PetscRanks& ranks, const Structure& structure,
-                                    const std::vector<Record>& records) {
+                                    const std::vector<Record>& records,
+                                    const std::vector<host::Copy>& copies) {
   const std::size_t own_count = structure.records.size();
   model::RobotSpec spec = structure.common;
   for (const Record& record : records) {
@@ -340,7 +341,8 @@ base::Result<model::Robot> robot_of(PetscRanks& ranks, const Structure& structur
     }
   }
   restrict(records, own_count, spec);
-  auto robot = model::Robot::create_part(spec, own_count);
+  auto robot =
+      model::Robot::create_part(spec, {.ranks = ranks, .own_count = own_count, .copies = copies});
   if (auto fault =
           first_fault(ranks, robot ? std::nullopt : std::optional(robot.error().message))) {
     return base::bad_input(*fault);
@@ -352,27 +354,25 @@ base::Result<model::Robot> robot_of(PetscRanks& ranks, const Structure& structur
 
 base::Result<Part> make_part(PetscRanks& ranks, const Structure& structure) {
   std::vector<Record> records = structure.records;
-  model::RobotPart share{.ranks = &ranks, .own_count = records.size(), .copies = {}};
   Neighbourhood neighbourhood(ranks, structure);
-  share.copies = neighbourhood.find(records);
-  auto robot = robot_of(ranks, structure, records);
+  std::vector<host::Copy> copies = neighbourhood.find(records);
+  auto robot = robot_of(ranks, structure, records, copies);
   if (!robot) {
     return robot.error();
   }
-  if (auto fault = find_fault(robot.value(), share)) {
+  if (auto fault = find_fault(robot.value())) {
     return base::bad_input(*fault);
   }
-  const std::vector<std::int8_t> axes = solver::passage_axes(robot.value(), share);
-  const auto copies = neighbourhood.follow_runs(robot.value(), share.copies, axes, records);
-  if (host::any(&ranks, copies.size() > share.copies.size())) {
-    share.copies = copies;
-    robot = robot_of(ranks, structure, records);
+  const std::vector<std::int8_t> axes = solver::passage_axes(robot.value());
+  copies = neighbourhood.follow_runs(robot.value(), axes, records);
+  if (host::any(ranks, copies.size() > robot.value().part().copies.size())) {
+    robot = robot_of(ranks, structure, records, copies);
     if (!robot) {
       return robot.error();
     }
   }
   const ModuleCounts counts = count_modules(ranks, structure, robot.value());
-  return Part{.robot = std::move(robot).value(), .share = std::move(share), .counts = counts};
+  return Part{.robot = std::move(robot).value(), .counts = counts};
 }
 
 }  // namespace holdfast::cluster

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "holdfast/model/robot.hpp"
-#include "holdfast/model/robot_part.hpp"
 #include "structure.hpp"
 
 namespace holdfast::cluster {
@@ -22,7 +21,6 @@ struct ModuleCounts {
 /// A rank's part of a robot, ready to be assessed.
 struct Part {
   model::Robot robot;
-  model::RobotPart share;
   ModuleCounts counts;
 };
 

@@ -252,7 +252,7 @@ int check_alone(PetscRanks& ranks, const Options& options, const Structure& stru
   if (!verdict) {
     return complain(ranks, verdict.error(), options.file);
   }
-  return host::all(&ranks, is_written) ? exit_code(verdict.value()) : kExitBadInput;
+  return host::all(ranks, is_written) ? exit_code(verdict.value()) : kExitBadInput;
 }
 
 /// Vectors of PETSc are numbered by PetscInt, which may have 32 bits.
@@ -293,16 +293,16 @@ int check_in_parts(PetscRanks& ranks, const Options& options, const Structure& s
   }
   bool is_written = write_picture(options,
                                   {.robot = &part.value().robot,
-                                   .own_count = part.value().share.own_count,
+                                   .own_count = part.value().robot.own_count(),
                                    .rank = ranks.rank(),
                                    .rank_count = ranks.count()},
                                   checked.assessment);
-  is_written = host::all(&ranks, is_written);
+  is_written = host::all(ranks, is_written);
   if (ranks.rank() == 0 && is_written) {
     is_written = write_answer(options, report_text(structure, part.value(), checked),
                               report_json(structure, part.value(), checked));
   }
-  is_written = host::all(&ranks, is_written);
+  is_written = host::all(ranks, is_written);
   if (is_kept && is_written) {
     checkpoint.remove();
   }
@@ -322,7 +322,7 @@ int check_file(PetscRanks& ranks, const Options& options) {
   if (!structure) {
     return complain(ranks, structure.error(), options.file);
   }
-  const std::size_t count = host::total(&ranks, structure.value().records.size());
+  const std::size_t count = host::total(ranks, structure.value().records.size());
   if (count <= options.alone_max || count < static_cast<std::size_t>(ranks.count())) {
     return check_alone(ranks, options, structure.value());
   }

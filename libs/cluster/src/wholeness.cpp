@@ -46,8 +46,9 @@ struct Link {
 
 /// The piece of its own rank's part that each module belongs to, among all ranks' pieces; of copies
 /// what their ranks say. Returns how many pieces all ranks have.
-std::size_t number_pieces(const model::Robot& robot, const model::RobotPart& part,
-                          std::vector<std::int32_t>& piece) {
+std::size_t number_pieces(const model::Robot& robot, std::vector<std::int32_t>& piece) {
+  const model::RobotPart& part = robot.part();
+  host::Ranks& ranks = part.ranks;
   Sets sets(part.own_count);
   for (const model::Connection& pair : robot.connections()) {
     if (at(pair.b) < part.own_count) {
@@ -59,8 +60,8 @@ std::size_t number_pieces(const model::Robot& robot, const model::RobotPart& par
   for (std::size_t i = 0; i < part.own_count; ++i) {
     count += sets.find(static_cast<std::int32_t>(i)) == static_cast<std::int32_t>(i) ? 1 : 0;
   }
-  const std::vector<std::size_t> first = host::starts(*part.ranks, at(count));
-  auto next = static_cast<std::int32_t>(first[at(part.ranks->rank())]);
+  const std::vector<std::size_t> first = host::starts(ranks, at(count));
+  auto next = static_cast<std::int32_t>(first[at(ranks.rank())]);
   for (std::size_t i = 0; i < part.own_count; ++i) {
     if (sets.find(static_cast<std::int32_t>(i)) == static_cast<std::int32_t>(i)) {
       piece[i] = next++;
@@ -69,14 +70,14 @@ std::size_t number_pieces(const model::Robot& robot, const model::RobotPart& par
   for (std::size_t i = 0; i < part.own_count; ++i) {
     piece[i] = piece[at(sets.find(static_cast<std::int32_t>(i)))];
   }
-  part.ranks->make_halo(part.own_count, part.copies)->update(piece.data(), sizeof(std::int32_t));
+  ranks.make_halo(part.own_count, part.copies)->update(piece.data(), sizeof(std::int32_t));
   return first.back();
 }
 
 /// How many pieces the whole robot is in.
-std::size_t count_pieces(const model::Robot& robot, const model::RobotPart& part) {
+std::size_t count_pieces(const model::Robot& robot) {
   std::vector<std::int32_t> piece;
-  const std::size_t count = number_pieces(robot, part, piece);
+  const std::size_t count = number_pieces(robot, piece);
   std::set<Link> links;
   for (const model::Connection& pair : robot.connections()) {
     if (piece[at(pair.a)] != piece[at(pair.b)]) {
@@ -86,7 +87,7 @@ std::size_t count_pieces(const model::Robot& robot, const model::RobotPart& part
   Sets sets(count);
   std::size_t left = count;
   for (const Link& link :
-       host::gather<Link>(*part.ranks, std::vector<Link>(links.begin(), links.end()))) {
+       host::gather<Link>(robot.ranks(), std::vector<Link>(links.begin(), links.end()))) {
     if (sets.find(link.a) != sets.find(link.b)) {
       sets.unite(link.a, link.b);
       --left;
@@ -97,12 +98,12 @@ std::size_t count_pieces(const model::Robot& robot, const model::RobotPart& part
 
 }  // namespace
 
-std::optional<std::string> find_fault(const model::Robot& robot, const model::RobotPart& part) {
-  const std::size_t pieces = count_pieces(robot, part);
+std::optional<std::string> find_fault(const model::Robot& robot) {
+  const std::size_t pieces = count_pieces(robot);
   if (pieces > 1) {
     return "the robot is in " + std::to_string(pieces) + " pieces, allowed is one";
   }
-  if (host::all(part.ranks, robot.facets().empty() && robot.fixed_count() == 0)) {
+  if (host::all(robot.ranks(), robot.facets().empty() && robot.fixed_count() == 0)) {
     return "nothing holds the robot: no module is fixed, and none touches the ground or an "
            "obstacle";
   }

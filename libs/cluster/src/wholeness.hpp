@@ -6,12 +6,11 @@
 #include <string>
 
 #include "holdfast/model/robot.hpp"
-#include "holdfast/model/robot_part.hpp"
 
 namespace holdfast::cluster {
 
 /// What is wrong with a robot as a whole: it is in pieces, or nothing holds it. The same at all
 /// ranks; none if nothing is wrong.
-std::optional<std::string> find_fault(const model::Robot& robot, const model::RobotPart& part);
+std::optional<std::string> find_fault(const model::Robot& robot);
 
 }  // namespace holdfast::cluster

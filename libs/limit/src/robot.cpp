@@ -102,7 +102,7 @@ double add_carried(const model::Robot& robot, const model::CarriedMass& carried,
 
 }  // namespace
 
-std::vector<ContactFacet> contact_facets(const model::Robot& robot, const model::RobotPart* part) {
+std::vector<ContactFacet> contact_facets(const model::Robot& robot) {
   std::vector<ContactFacet> facets;
   for (const model::Facet& facet : robot.facets()) {
     facets.push_back({.centre_mm = middle_mm(robot, facet.module, facet.direction),
@@ -111,24 +111,19 @@ std::vector<ContactFacet> contact_facets(const model::Robot& robot, const model:
                       .is_bonded = facet.is_bonded(),
                       .friction = facet.touch.friction});
   }
-  if (part != nullptr) {
-    facets = host::gather<ContactFacet>(*part->ranks, facets);
-  }
   return facets;
 }
 
-BodyLoad body_load(const model::Robot& robot, const model::RobotPart* part) {
-  host::Ranks* const ranks = model::ranks_of(part);
+BodyLoad body_load(const model::Robot& robot) {
   BodyLoad load;
-  const model::Mass mass = model::mass_of(robot, part);
+  const model::Mass mass = model::mass_of(robot);
   load.centre_of_mass_mm = mass.centre_mm;
   for (std::size_t i = 0; i < 3; ++i) {
     load.weight_n[i] = mass.kg * robot.gravity()[i];
   }
   const base::NodePlaces places(robot.lattice(), robot.material().pitch_mm);
   double inertia = 0;
-  const std::size_t count = model::own_module_count(robot, part);
-  for (std::size_t module = 0; module < count; ++module) {
+  for (std::size_t module = 0; module < robot.own_count(); ++module) {
     const Vector3 node = places(robot.modules()[module].cell);
     const Vector3 arm = difference(node, load.centre_of_mass_mm);
     inertia += robot.mass(module) * dot(arm, arm);
@@ -147,22 +142,22 @@ BodyLoad body_load(const model::Robot& robot, const model::RobotPart* part) {
   for (const model::CarriedMass& carried : robot.carried()) {
     inertia += carried.mass_kg * add_carried(robot, carried, load);
   }
-  inertia = host::sum(ranks, inertia);
+  inertia = host::sum(robot.ranks(), inertia);
   for (std::size_t i = 0; i < 3; ++i) {
-    load.payload_n[i] = host::sum(ranks, load.payload_n[i]);
-    load.payload_nmm[i] = host::sum(ranks, load.payload_nmm[i]);
+    load.payload_n[i] = host::sum(robot.ranks(), load.payload_n[i]);
+    load.payload_nmm[i] = host::sum(robot.ranks(), load.payload_nmm[i]);
   }
   const double least = robot.material().pitch_mm / 2;
   load.gyration_mm = std::max(least, std::sqrt(inertia / mass.kg));
   return load;
 }
 
-RigidStability assess_rigid(const model::Robot& robot, const model::RobotPart* part,
-                            bool has_figures) {
-  if (host::any(model::ranks_of(part), robot.fixed_count() > 0)) {
+RigidStability assess_rigid(const model::Robot& robot, bool has_figures) {
+  if (host::any(robot.ranks(), robot.fixed_count() > 0)) {
     return {.answer = RigidAnswer::kHolds};
   }
-  return assess_rigid(contact_facets(robot, part), body_load(robot, part), has_figures);
+  return assess_rigid(host::gather<ContactFacet>(robot.ranks(), contact_facets(robot)),
+                      body_load(robot), has_figures);
 }
 
 Structure structure_of(const model::Robot& robot, bool is_bonded) {

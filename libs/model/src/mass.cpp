@@ -6,7 +6,7 @@
 
 namespace holdfast::model {
 
-std::array<double, 3> common_node_mm(const Robot& robot, const RobotPart* part) {
+std::array<double, 3> common_node_mm(const Robot& robot) {
   const base::NodePlaces node_mm(robot.lattice(), robot.material().pitch_mm);
   std::array<double, 3> node{};
   node.fill(-std::numeric_limits<double>::infinity());
@@ -14,18 +14,16 @@ std::array<double, 3> common_node_mm(const Robot& robot, const RobotPart* part) 
     node = node_mm(robot.modules().front().cell);
   }
   for (double& x : node) {
-    x = host::max(ranks_of(part), x);
+    x = host::max(robot.ranks(), x);
   }
   return node;
 }
 
-Mass mass_of(const Robot& robot, const RobotPart* part) {
+Mass mass_of(const Robot& robot) {
   const base::NodePlaces node_mm(robot.lattice(), robot.material().pitch_mm);
-  const std::array<double, 3> origin = common_node_mm(robot, part);
+  const std::array<double, 3> origin = common_node_mm(robot);
   Mass mass;
-  host::Ranks* const ranks = ranks_of(part);
-  const std::size_t count = own_module_count(robot, part);
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < robot.own_count(); ++i) {
     const auto node = node_mm(robot.modules()[i].cell);
     for (std::size_t k = 0; k < 3; ++k) {
       mass.centre_mm[k] += robot.mass(i) * (node[k] - origin[k]);
@@ -39,9 +37,9 @@ Mass mass_of(const Robot& robot, const RobotPart* part) {
     }
     mass.kg += carried.mass_kg;
   }
-  mass.kg = host::sum(ranks, mass.kg);
+  mass.kg = host::sum(robot.ranks(), mass.kg);
   for (std::size_t k = 0; k < 3; ++k) {
-    mass.centre_mm[k] = origin[k] + host::sum(ranks, mass.centre_mm[k]) / mass.kg;
+    mass.centre_mm[k] = origin[k] + host::sum(robot.ranks(), mass.centre_mm[k]) / mass.kg;
   }
   return mass;
 }

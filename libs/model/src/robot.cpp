@@ -121,8 +121,7 @@ base::Result<Robot> Robot::create(const RobotSpec& spec, int thread_count) {
   return robot;
 }
 
-base::Result<Robot> Robot::create_part(const RobotSpec& spec, std::size_t own_count,
-                                       int thread_count) {
+base::Result<Robot> Robot::create_part(const RobotSpec& spec, RobotPart part, int thread_count) {
   if (auto fault = find_number_fault(spec)) {
     return base::bad_input(*fault);
   }
@@ -130,6 +129,8 @@ base::Result<Robot> Robot::create_part(const RobotSpec& spec, std::size_t own_co
   if (auto fault = robot.take(spec, thread_count, Extent::kPart)) {
     return base::bad_input(*fault);
   }
+  robot.part_ = std::move(part);
+  const std::size_t own_count = robot.own_count();
   std::erase_if(robot.facets_,
                 [&](const Facet& facet) { return base::at(facet.module) >= own_count; });
   host::Team team(thread_count, own_count);
@@ -168,6 +169,7 @@ void Robot::add_modules(const RobotSpec& spec) {
       modules_.push_back({.cell = cell, .is_planned = cells == &spec.planned});
     }
   }
+  part_.own_count = modules_.size();
 }
 
 std::optional<std::string> Robot::fix(std::span<const Cell> cells, const CellIndex& index) {

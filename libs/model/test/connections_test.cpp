@@ -87,7 +87,7 @@ TEST(Connections, of_a_part_are_those_of_its_own_modules) {
   for (int i = 0; i < 10; ++i) {
     const RobotSpec spec = random_stacks(rng, base::kCubic);
     const std::size_t own_count = spec.existing.size() / 2;
-    const Robot part = Robot::create_part(spec, own_count).value();
+    const Robot part = Robot::create_part(spec, {.own_count = own_count}).value();
     expect_list(part.connections(), by_trial(part, own_count));
   }
 }

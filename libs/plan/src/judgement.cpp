@@ -8,7 +8,7 @@
 namespace holdfast::plan {
 
 verdict::Assessment first_look(const model::Robot& robot) {
-  verdict::Assessment assessment = verdict::assess_rigidly(robot, nullptr, false);
+  verdict::Assessment assessment = verdict::assess_rigidly(robot, false);
   const bool is_open =
       assessment.is_stable || assessment.rigid.answer == limit::RigidAnswer::kUndecided;
   assessment.verdict = is_open ? verdict::Verdict::kUndecided : verdict::Verdict::kUnstable;

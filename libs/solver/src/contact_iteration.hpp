@@ -40,10 +40,10 @@ class ContactIteration {
   int step_count_max() const { return options_.step_count_max; }
 
   /// Who has the other parts of the robot; null: nobody.
-  host::Ranks* ranks() const { return options_.ranks(); }
+  host::Ranks& ranks() const { return system_.robot().ranks(); }
 
   /// Of the robot's modules those that are not copies of other ranks'.
-  std::size_t own_count() const { return model::own_module_count(system_.robot(), options_.part); }
+  std::size_t own_count() const { return system_.robot().own_count(); }
 
   /// Solves for the present states.
   Outcome solve();

@@ -145,7 +145,7 @@ void EquilibriumSolver::attempt(const ContactOptions& contact, Equilibrium& resu
   const LinearReport before = system.report();
   system.set_law(contact);
   const bool is_all_bonded = std::ranges::all_of(system.facets(), &FacetState::is_bonded);
-  if (options_.is_bonded || host::all(options_.ranks(), is_all_bonded)) {
+  if (options_.is_bonded || host::all(system.robot().ranks(), is_all_bonded)) {
     BondedContact search(system, options_);
     solve_with(
         system, search, [] { return false; }, result);

@@ -63,7 +63,7 @@ constexpr std::size_t kElsewhere = std::numeric_limits<std::size_t>::max();
 /// Facets, by index, that may have a second state; lightest for their sideways force first, and one
 /// only of those that bear the same, as each other's mirror images do.
 std::vector<std::size_t> RegularisedContact::doubtful_facets(const std::vector<Vec>& facets) const {
-  const std::size_t here = ranks() == nullptr ? 0 : base::at(ranks()->rank());
+  const std::size_t here = base::at(ranks().rank());
   std::vector<Doubt> doubts;
   for (std::size_t i = 0; i < system().facets().size(); ++i) {
     const FacetState& facet = system().facets()[i];
@@ -79,9 +79,7 @@ std::vector<std::size_t> RegularisedContact::doubtful_facets(const std::vector<V
       doubts.push_back(doubt);
     }
   }
-  if (ranks() != nullptr) {
-    doubts = unlike_ones(host::gather<Doubt>(*ranks(), doubts));
-  }
+  doubts = unlike_ones(host::gather<Doubt>(ranks(), doubts));
   std::ranges::sort(doubts, {},
                     [](const Doubt& doubt) { return doubt.upright_n / doubt.sideways_n; });
   std::vector<std::size_t> indices;

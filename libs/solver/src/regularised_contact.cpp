@@ -3,35 +3,23 @@
 #include "regularised_contact.hpp"
 
 #include <cstdint>
-#include <cstring>
 #include <set>
-#include <utility>
+#include <span>
+#include <vector>
 
 namespace holdfast::solver {
 namespace {
 
 using mechanics::ContactState;
 
-/// States in a form that can be compared and remembered.
-std::vector<std::int8_t> codes_of(const std::vector<ContactState>& states) {
-  std::vector<std::int8_t> codes;
-  codes.reserve(states.size());
-  for (const ContactState& state : states) {
-    codes.push_back(static_cast<std::int8_t>(state.code()));
-  }
-  return codes;
-}
-
 /// Something short that stands for all ranks' states; equal by chance once in 2^64.
-std::vector<std::int8_t> codes_of_all(host::Ranks& ranks, const std::vector<std::int8_t>& codes) {
+std::vector<std::uint64_t> hashes_of(host::Ranks& ranks, const std::vector<ContactState>& states) {
   std::uint64_t hash = 0x243f6a8885a308d3U;
-  for (const std::int8_t code : codes) {
-    hash = (hash ^ static_cast<std::uint8_t>(code)) * 0x9e3779b97f4a7c15U;
+  for (const ContactState& state : states) {
+    hash = (hash ^ static_cast<std::uint8_t>(state.code())) * 0x9e3779b97f4a7c15U;
     hash ^= hash >> 32U;
   }
-  std::vector<std::int8_t> mine(sizeof hash);
-  std::memcpy(mine.data(), &hash, sizeof hash);
-  return host::gather<std::int8_t>(ranks, mine);
+  return host::gather(ranks, std::span<const std::uint64_t>(&hash, 1));
 }
 
 }  // namespace
@@ -40,7 +28,7 @@ RegularisedContact::RegularisedContact(LinearSystem& system, const EquilibriumOp
     : ContactIteration(system, options) {}
 
 Outcome RegularisedContact::run() {
-  std::set<std::vector<std::int8_t>> seen;
+  std::set<std::vector<std::uint64_t>> seen;
   for (int step = 0; step < step_count_max(); ++step) {
     const Outcome outcome = solve_for_states();
     if (outcome != Outcome::kSettled) {
@@ -53,11 +41,7 @@ Outcome RegularisedContact::run() {
       }
       continue;
     }
-    std::vector<std::int8_t> codes = codes_of(states);
-    if (ranks() != nullptr) {
-      codes = codes_of_all(*ranks(), codes);
-    }
-    if (!seen.insert(std::move(codes)).second) {
+    if (!seen.insert(hashes_of(ranks(), states)).second) {
       return Outcome::kNotSettled;
     }
     loosen();

@@ -182,32 +182,34 @@ SpringGraph chain(double s) {
   return graph;
 }
 
+std::vector<std::uint8_t> weak_in_whole(const SpringGraph& graph) {
+  host::Team team(1);
+  host::NoCopies none;
+  return weak_springs(graph, team, none);
+}
+
 /// Weak is what resists some motion by less than 0.007 of what all springs of the node do.
 TEST(WeakSprings, a_spring_is_weak_below_a_share_of_what_holds_its_nodes) {
-  host::Team team(1);
   const auto with_share = [](double share) { return chain(share / (1 - share)); };
-  EXPECT_TRUE(weak_springs(with_share(0.00701), team).empty());
-  const std::vector<std::uint8_t> weak = weak_springs(with_share(0.00699), team);
+  EXPECT_TRUE(weak_in_whole(with_share(0.00701)).empty());
+  const std::vector<std::uint8_t> weak = weak_in_whole(with_share(0.00699));
   EXPECT_EQ(weak, (std::vector<std::uint8_t>{0, 0, 1, 1, 0, 0}));
 }
 
 /// A body that hangs on one spring alone is held by nothing else, so that spring is not weak there,
 /// however weak it is at the other end.
 TEST(WeakSprings, what_hangs_on_one_spring_alone_joins_it) {
-  host::Team team(1);
   SpringGraph graph = chain(1);
   const PackedSpring soft(Spring{.stiffness = scaled(graph.springs[1].stiffness(), 1e-5)});
   graph.springs[0] = graph.springs[1] = soft;
-  EXPECT_TRUE(weak_springs(graph, team).empty() ||
-              weak_springs(graph, team) == std::vector<std::uint8_t>(6));
+  EXPECT_TRUE(weak_in_whole(graph).empty() || weak_in_whole(graph) == std::vector<std::uint8_t>(6));
 }
 
 /// Between single modules each spring is one beam, and none counts as weak.
 TEST(WeakSprings, on_the_finest_level_none_is_weak) {
-  host::Team team(1);
   SpringGraph graph = chain(1e-6);
   graph.shift = 0;
-  EXPECT_TRUE(weak_springs(graph, team).empty());
+  EXPECT_TRUE(weak_in_whole(graph).empty());
 }
 
 /// What each rank has last had for its nodes, as bytes.
@@ -221,7 +223,7 @@ class MailHalo final : public host::Halo {
   void update(void* items, std::size_t size) override {
     auto* const bytes = static_cast<std::byte*>(items);
     for (std::size_t node = 0; node < graph_.own_count(); ++node) {
-      const host::Original own = {.rank = graph_.ranks->rank(),
+      const host::Original own = {.rank = graph_.ranks.get().rank(),
                                   .index = static_cast<std::int32_t>(node)};
       mail_[own].assign(bytes + node * size, bytes + (node + 1) * size);
     }
@@ -278,7 +280,7 @@ class OneOfTwo final : public host::Ranks {
 SpringGraph half_chain(const SpringGraph& whole, OneOfTwo& ranks) {
   const bool is_second = ranks.rank() == 1;
   SpringGraph half;
-  half.ranks = &ranks;
+  half.ranks = ranks;
   half.order = {0, 1, 2};
   half.copies = {{.original = {.rank = is_second ? 0 : 1, .index = is_second ? 1 : 0}, .place = 2}};
   half.start =
@@ -302,24 +304,23 @@ std::vector<std::uint8_t> weak_in_halves(const SpringGraph& whole) {
   Mail mail;
   MailHalo left_halo(left, mail);
   MailHalo right_halo(right, mail);
-  weak_springs(left, team, &left_halo);
-  const std::vector<std::uint8_t> of_right = weak_springs(right, team, &right_halo);
-  std::vector<std::uint8_t> all = weak_springs(left, team, &left_halo);
+  weak_springs(left, team, left_halo);
+  const std::vector<std::uint8_t> of_right = weak_springs(right, team, right_halo);
+  std::vector<std::uint8_t> all = weak_springs(left, team, left_halo);
   all.insert(all.end(), of_right.begin(), of_right.end());
   return all;
 }
 
 /// A neck between two ranks is one at both, and what is weak at one end only is none.
 TEST(WeakSprings, ranks_find_those_of_the_whole) {
-  host::Team team(1);
   const SpringGraph whole = chain(0.006);
-  EXPECT_EQ(weak_springs(whole, team), (std::vector<std::uint8_t>{0, 0, 1, 1, 0, 0}));
-  EXPECT_EQ(weak_in_halves(whole), weak_springs(whole, team));
+  EXPECT_EQ(weak_in_whole(whole), (std::vector<std::uint8_t>{0, 0, 1, 1, 0, 0}));
+  EXPECT_EQ(weak_in_halves(whole), weak_in_whole(whole));
   SpringGraph soft_end = whole;  // Holds the third body by so little that the middle spring counts.
   const Mat soft = scaled(whole.springs[4].stiffness(), 0.1);
   soft_end.springs[4] = soft_end.springs[5] = PackedSpring(Spring{.stiffness = soft});
-  EXPECT_TRUE(weak_springs(soft_end, team).empty() ||
-              weak_springs(soft_end, team) == std::vector<std::uint8_t>(6));
+  EXPECT_TRUE(weak_in_whole(soft_end).empty() ||
+              weak_in_whole(soft_end) == std::vector<std::uint8_t>(6));
   EXPECT_EQ(weak_in_halves(soft_end), std::vector<std::uint8_t>(6));
 }
 

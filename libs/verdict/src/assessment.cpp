@@ -3,6 +3,7 @@
 #include "holdfast/verdict/assessment.hpp"
 
 #include <algorithm>
+#include <array>
 #include <span>
 #include <utility>
 #include <vector>
@@ -48,21 +49,23 @@ constexpr std::size_t kPreciseFillMax = 100;
 constexpr std::size_t kPreciseCountMax = 2'000;
 constexpr double kFineTolerance = 1e-4;
 
-/// Whether the model's stability is the rigid body's. A margin of zero is unstable by decision, not
-/// by mechanics: no model need agree with it.
-bool agrees(const Assessment& assessment) {
-  if (assessment.stability_rule == StabilityRule::kContactForces) {
-    return assessment.model.is_settled;  // Each is an answer of its own.
-  }
-  return assessment.model.is_settled && (assessment.model.is_stable == assessment.is_stable ||
-                                         assessment.simplified.margin_mm == 0);
+/// What the rigid body says, Sec. III-B.
+Assessment look_at_rigid_body(const Situation& here, bool has_figures) {
+  Assessment assessment;
+  assessment.stability_rule = here.rule;
+  assessment.simplified = rigid_body(here);
+  assessment.rigid = rigid_stability(here, assessment.simplified, has_figures);
+  assessment.is_stable = assessment.rigid.holds();
+  return assessment;
 }
 
-ContactModel contact_model(const model::Robot& robot, ContactLaw law, host::Ranks* ranks) {
-  if (host::all(ranks, std::ranges::all_of(robot.facets(), &model::Facet::is_bonded))) {
-    return ContactModel::kNone;
-  }
-  return law == ContactLaw::kUnilateral ? ContactModel::kUnilateral : ContactModel::kRegularised;
+/// Whether the model's stability is the rigid body's. A margin of zero is unstable by decision, not
+/// by mechanics: no model need agree with it. With supports anywhere each is an answer of its own.
+bool agrees(const Assessment& assessment) {
+  return assessment.model.is_settled &&
+         (assessment.stability_rule == StabilityRule::kContactForces ||
+          assessment.model.is_stable == assessment.is_stable ||
+          assessment.simplified.margin_mm == 0);
 }
 
 std::span<const double> weak_springs(solver::EquilibriumSolver& solver, bool is_stable) {
@@ -76,109 +79,106 @@ std::span<const double> weak_springs(solver::EquilibriumSolver& solver, bool is_
 
 /// Whether the paper's law, of which Newton's method found no solution, has one that falls. With
 /// supports anywhere its answer counts beside the exact law's.
-bool falls_by_other_states(const model::Robot& robot, solver::EquilibriumSolver& solver,
-                           const model::RobotPart* part, const Assessment& assessment) {
-  if (assessment.stability_rule != StabilityRule::kContactForces || !assessment.model.is_settled ||
-      !assessment.model.is_stable) {
+bool falls_by_other_states(const Situation& here, solver::EquilibriumSolver& solver,
+                           const ModelStability& model) {
+  if (here.rule != StabilityRule::kContactForces || !model.is_settled || !model.is_stable) {
     return false;
   }
   const auto found = solver.seek_settled(
-      {.law = ContactLaw::kRegularised, .gamma = robot.material().contact_gamma});
+      {.law = ContactLaw::kRegularised, .gamma = here.robot.material().contact_gamma});
   return std::ranges::any_of(found, [&](const Equilibrium& equilibrium) {
-    return !model_stability(robot, equilibrium, part).is_stable;
+    return !model_stability(here, equilibrium).is_stable;
   });
 }
 
 /// The paper's contact law first; the exact one where it has no answer or one that contradicts the
 /// rigid body, which is certain on flat ground.
-void find_equilibrium(const model::Robot& robot, solver::EquilibriumSolver& solver,
-                      const solver::EquilibriumOptions& options, Assessment& assessment) {
-  assessment.equilibrium =
-      solver.solve({.law = ContactLaw::kRegularised, .gamma = robot.material().contact_gamma});
-  assessment.model = model_stability(robot, assessment.equilibrium, options.part);
-  assessment.contact_model = contact_model(robot, ContactLaw::kRegularised, options.ranks());
-  if (assessment.equilibrium.outcome == Outcome::kTooLarge ||
-      assessment.contact_model == ContactModel::kNone) {
-    return;
-  }
-  if (options.is_bonded) {
-    assessment.contact_model = ContactModel::kBonded;
-    return;
-  }
-  if (agrees(assessment)) {
+void find_equilibrium(const Situation& here, solver::EquilibriumSolver& solver, bool is_bonded,
+                      Assessment& assessment) {
+  Equilibrium& found = assessment.equilibrium;
+  found =
+      solver.solve({.law = ContactLaw::kRegularised, .gamma = here.robot.material().contact_gamma});
+  assessment.model = model_stability(here, found);
+  const bool is_too_large = found.outcome == Outcome::kTooLarge;
+  assessment.contact_model = !here.has_contact            ? ContactModel::kNone
+                             : is_bonded && !is_too_large ? ContactModel::kBonded
+                                                          : ContactModel::kRegularised;
+  if (is_too_large || assessment.contact_model != ContactModel::kRegularised ||
+      agrees(assessment)) {
     return;
   }
   for (const double gamma : weak_springs(solver, assessment.is_stable)) {
+    found.displacement = std::vector<base::Vec6<double>>();  // To have its memory.
+    found.alternative = std::vector<base::Vec6<double>>();
+    Equilibrium exact = solver.solve({.law = ContactLaw::kUnilateral, .gamma = gamma});
+    exact.begin_with(found);
+    found = std::move(exact);
+    assessment.model = model_stability(here, found);
+    assessment.contact_model = ContactModel::kUnilateral;
     if (agrees(assessment)) {
       break;
     }
-    assessment.equilibrium.displacement = std::vector<base::Vec6<double>>();  // To have its memory.
-    assessment.equilibrium.alternative = std::vector<base::Vec6<double>>();
-    Equilibrium exact = solver.solve({.law = ContactLaw::kUnilateral, .gamma = gamma});
-    exact.begin_with(assessment.equilibrium);
-    assessment.equilibrium = std::move(exact);
-    assessment.model = model_stability(robot, assessment.equilibrium, options.part);
-    assessment.contact_model = ContactModel::kUnilateral;
   }
-  assessment.model.falls_otherwise = falls_by_other_states(robot, solver, options.part, assessment);
+  assessment.model.falls_otherwise = falls_by_other_states(here, solver, assessment.model);
 }
 
-/// Whether the equilibrium is one of the paper's law that stands.
+/// Whether a robot of a settled equilibrium stands by a solution of the paper's law, which may then
+/// have others.
 bool stands_by_paper(const Assessment& assessment) {
   return assessment.contact_model == ContactModel::kRegularised && assessment.is_stable &&
          agrees(assessment);
 }
 
-/// The paper's law's further solutions, and the exact law's beside them where there are any, or
-/// where open facets may pull. `answers` are those of the equilibrium.
-void seek_others(const model::Robot& robot, solver::EquilibriumSolver& solver,
-                 const solver::EquilibriumOptions& options, const LoadRange& answers,
-                 Assessment& assessment) {
-  solver.seek_others(assessment.equilibrium);
-  if (!assessment.equilibrium.others.empty() ||
-      has_pulling_facets(robot, assessment, options.part)) {
-    const double gamma = weak_springs(solver, assessment.is_stable).front();
-    compare_solutions(robot, solver, gamma, options, answers, assessment);
-  }
+bool has_pulling_facets(const Situation& here, const Equilibrium& equilibrium) {
+  const bool is_any_not_stuck = std::ranges::any_of(
+      equilibrium.contact, [&](const auto& state) { return state != mechanics::kStuck; });
+  return !here.is_on_flat_floor && host::any(here.robot.ranks(), is_any_not_stuck);
 }
 
-/// The equilibrium, its loads, and what there is beside it. Loads come before others are sought, as
-/// then the second answer need not wait.
-void solve(const model::Robot& robot, const solver::EquilibriumOptions& options,
+/// The equilibrium, its loads, and what there is beside it: the paper's law's further solutions,
+/// and the exact law's answer where there are any, or where open facets may pull. Loads come before
+/// others are sought, as then the second answer need not wait.
+void solve(const Situation& here, const solver::EquilibriumOptions& options,
            Assessment& assessment) {
-  if (!assessment.is_stable && (robot.modules().size() > kTopplingCountMax ||
-                                options.method == solver::Method::kMultigrid)) {
-    assessment.equilibrium.outcome = Outcome::kNotSought;
-    return;
-  }
-  solver::EquilibriumSolver solver(robot, options);
-  find_equilibrium(robot, solver, options, assessment);
+  solver::EquilibriumSolver solver(here.robot, options);
+  find_equilibrium(here, solver, options.is_bonded, assessment);
   if (assessment.equilibrium.outcome != Outcome::kSettled) {
     return;
   }
-  const LoadRange answers = assess_loads(robot, options, assessment);
-  if (stands_by_paper(assessment)) {
-    seek_others(robot, solver, options, answers, assessment);
+  const LoadRange answers = assess_loads(here, options, assessment);
+  if (!stands_by_paper(assessment)) {
+    return;
+  }
+  solver.seek_others(assessment.equilibrium);
+  if (here.has_connections && (!assessment.equilibrium.others.empty() ||
+                               has_pulling_facets(here, assessment.equilibrium))) {
+    const double gamma = weak_springs(solver, assessment.is_stable).front();
+    compare_solutions(here, solver, gamma, options, answers, assessment);
   }
 }
 
 /// Connections, verdict and reasons, once there are an equilibrium and its loads.
-Assessment conclude(const model::Robot& robot, Assessment assessment,
-                    const solver::EquilibriumOptions& options) {
+void conclude(const Situation& here, int thread_count, Assessment& assessment) {
   if (assessment.equilibrium.outcome == Outcome::kSettled) {
-    assess_connections(robot, options.thread_count, assessment);
-    assessment.gaps = find_open_gaps(robot, assessment.equilibrium, options.ranks());
-    assessment.lean = find_lean(robot, assessment, options.part);
+    assess_connections(here.robot, thread_count, assessment);
+    assessment.gaps = find_open_gaps(here.robot, assessment.equilibrium);
+    assessment.lean = find_lean(here.robot, assessment);
   }
-  decide(robot, options.part, assessment);
-  return assessment;
+  decide(here, assessment);
 }
 
-Assessment assess_once(const model::Robot& robot, const solver::EquilibriumOptions& options) {
-  Assessment assessment = assess_rigidly(robot, options.part, options.has_rigid_figures);
-  assessment.is_stable = assessment.is_stable || options.is_bonded;
-  solve(robot, options, assessment);
-  return conclude(robot, std::move(assessment), options);
+/// All that follows what the rigid body says, `assessment`.
+Assessment go_on(const Situation& here, const solver::EquilibriumOptions& options,
+                 Assessment assessment) {
+  const bool is_small = here.robot.modules().size() <= kTopplingCountMax &&
+                        options.method != solver::Method::kMultigrid;
+  if (assessment.is_stable || is_small) {
+    solve(here, options, assessment);
+  } else {
+    assessment.equilibrium.outcome = Outcome::kNotSought;
+  }
+  conclude(here, options.thread_count, assessment);
+  return assessment;
 }
 
 /// Whether an error no larger than what the range allows for would decide.
@@ -192,10 +192,10 @@ bool is_near_limit(const Assessment& assessment) {
 
 /// Where the verdict hangs on the error: the direct solver with all digits, or where that does not
 /// fit multigrid with more of them; of large robots the other way round.
-std::vector<solver::EquilibriumOptions> finer_options(const model::Robot& robot,
+std::vector<solver::EquilibriumOptions> finer_options(const Situation& here,
                                                       const solver::EquilibriumOptions& options) {
   std::vector<solver::EquilibriumOptions> list;
-  const bool is_large = model::whole_module_count(robot, options.part) > kPreciseCountMax;
+  const bool is_large = here.module_count > kPreciseCountMax;
   if (options.method != solver::Method::kDirect) {
     solver::EquilibriumOptions multigrid = options;
     multigrid.method = solver::Method::kMultigrid;
@@ -219,31 +219,23 @@ std::vector<solver::EquilibriumOptions> finer_options(const model::Robot& robot,
 
 }  // namespace
 
-bool has_pulling_facets(const model::Robot& robot, const Assessment& assessment,
-                        const model::RobotPart* part) {
-  const auto& contact = assessment.equilibrium.contact;
-  const bool is_any_not_stuck =
-      std::ranges::any_of(contact, [&](const auto& state) { return state != mechanics::kStuck; });
-  return !is_on_flat_floor(robot, part) && host::any(model::ranks_of(part), is_any_not_stuck);
+bool has_pulling_facets(const model::Robot& robot, const Assessment& assessment) {
+  return has_pulling_facets(Situation(robot), assessment.equilibrium);
 }
 
-Assessment assess_rigidly(const model::Robot& robot, const model::RobotPart* part,
-                          bool has_figures) {
-  Assessment assessment;
-  assessment.simplified = assess_rigid_body(robot, part);
-  assessment.stability_rule = stability_rule(robot, part);
-  assessment.rigid =
-      rigid_stability(robot, assessment.stability_rule, assessment.simplified, part, has_figures);
-  assessment.is_stable = assessment.rigid.holds();
-  return assessment;
+Assessment assess_rigidly(const model::Robot& robot, bool has_figures) {
+  return look_at_rigid_body(Situation(robot), has_figures);
 }
 
 Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& options) {
-  Assessment assessment = assess_once(robot, options);
+  const Situation here(robot);
+  Assessment start = look_at_rigid_body(here, options.has_rigid_figures);
+  start.is_stable = start.is_stable || options.is_bonded;
+  Assessment assessment = go_on(here, options, start);
   if (!is_near_limit(assessment)) {
     return assessment;
   }
-  const std::vector<solver::EquilibriumOptions> all_finer = finer_options(robot, options);
+  const std::vector<solver::EquilibriumOptions> all_finer = finer_options(here, options);
   const solver::EquilibriumOptions* known = &options;  // What `assessment` was found with.
   bool is_whole = true;
   for (const solver::EquilibriumOptions& finer : all_finer) {
@@ -251,7 +243,7 @@ Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& o
     assessment.connections = std::vector<ConnectionResult>();
     assessment.equilibrium.displacement = std::vector<base::Vec6<double>>();
     is_whole = false;
-    Assessment next = assess_once(robot, finer);
+    Assessment next = go_on(here, finer, start);
     // Solutions that were found once are there, whether or not they are found again.
     const bool is_one_lost = assessment.several && !next.several;
     if (next.equilibrium.outcome != Outcome::kSettled || is_one_lost) {
@@ -264,48 +256,34 @@ Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& o
     known = &finer;
     is_whole = true;
   }
-  return is_whole ? std::move(assessment) : assess_once(robot, *known);
+  return is_whole ? std::move(assessment) : go_on(here, *known, std::move(start));
 }
 
 Assessment assess_equilibrium(const model::Robot& robot, Equilibrium equilibrium,
                               int thread_count) {
-  Assessment assessment = assess_rigidly(robot);
+  const Situation here(robot);
+  Assessment assessment = look_at_rigid_body(here, true);
   assessment.equilibrium = std::move(equilibrium);
-  assessment.model = model_stability(robot, assessment.equilibrium, nullptr);
-  assessment.contact_model = contact_model(robot, assessment.equilibrium.law, nullptr);
-  const solver::EquilibriumOptions options = {.thread_count = thread_count};
+  assessment.model = model_stability(here, assessment.equilibrium);
+  assessment.contact_model = !here.has_contact ? ContactModel::kNone
+                             : assessment.equilibrium.law == ContactLaw::kUnilateral
+                                 ? ContactModel::kUnilateral
+                                 : ContactModel::kRegularised;
   if (assessment.equilibrium.outcome == Outcome::kSettled) {
-    assess_loads(robot, options, assessment);
+    assess_loads(here, {.thread_count = thread_count}, assessment);
   }
-  return conclude(robot, std::move(assessment), options);
+  conclude(here, thread_count, assessment);
+  return assessment;
 }
 
 const char* name(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kSafe:
-      return "safe";
-    case Verdict::kOverload:
-      return "overload";
-    case Verdict::kUnstable:
-      return "unstable";
-    case Verdict::kUndecided:
-      break;
-  }
-  return "undecided";
+  constexpr std::array kNames = {"safe", "overload", "unstable", "undecided"};
+  return kNames[static_cast<std::size_t>(verdict)];
 }
 
 const char* name(ContactModel model) {
-  switch (model) {
-    case ContactModel::kRegularised:
-      return "regularised";
-    case ContactModel::kUnilateral:
-      return "unilateral";
-    case ContactModel::kBonded:
-      return "bonded";
-    case ContactModel::kNone:
-      break;
-  }
-  return "none";
+  constexpr std::array kNames = {"none", "bonded", "regularised", "unilateral"};
+  return kNames[static_cast<std::size_t>(model)];
 }
 
 }  // namespace holdfast::verdict

@@ -13,7 +13,6 @@
 #include "holdfast/host/free_memory.hpp"
 #include "holdfast/host/team.hpp"
 #include "holdfast/verdict/connection_law.hpp"
-#include "several_solutions.hpp"
 
 namespace holdfast::verdict {
 namespace {
@@ -21,12 +20,21 @@ namespace {
 using mechanics::ContactLaw;
 using solver::Equilibrium;
 
+/// What weak springs that are not taken back from the unilateral contact of a stable robot may
+/// move, in the same terms: so many times their share of the contact's stiffness, besides what
+/// their energy may do. In a robot of 4,327 modules with long thin limbs springs of 1e-9 moved the
+/// largest load ratio by 1.4e-4, and of 1e-6 by 4 %, so this alone is no bound.
+constexpr double kWeakSprings = 1e3;
+
+/// What multigrid may be off by, as it promises (docs/solver.md).
+constexpr double kMultigridError = 1e-4;
+
 /// Unlike with std::max, a NaN on either side wins: what is not known must not hide.
 double max_or_nan(double a, double b) { return std::isnan(a) || a > b ? a : b; }
 
 bool is_nan(const LoadRange& range) { return std::isnan(range.low) || std::isnan(range.high); }
 
-/// What some connections in a row say together.
+/// What some connections say together.
 struct Loads {
   LoadRange range = {.low = -std::numeric_limits<double>::infinity(),
                      .high = -std::numeric_limits<double>::infinity()};
@@ -34,7 +42,6 @@ struct Loads {
   double other_max = -std::numeric_limits<double>::infinity();  ///< Of the second answer.
   double change = 0;  ///< The most by which the two answers differ, of any connection.
   std::size_t worst = 0;
-  std::vector<std::size_t> broken;
 
   void add(std::size_t connection, double ratio, double other_ratio) {
     const double low = ratio < other_ratio ? ratio : other_ratio;
@@ -46,21 +53,18 @@ struct Loads {
       ratio_max = ratio;
       worst = connection;
     }
-    if (breaks(ratio)) {
-      broken.push_back(connection);
-    }
   }
 
-  void add(const Loads& next) {
+  /// Returns whether the worst is one of the next.
+  bool add(const Loads& next) {
     range = {.low = max_or_nan(range.low, next.range.low),
              .high = max_or_nan(range.high, next.range.high)};
     change = std::max(change, next.change);
     other_max = std::max(other_max, next.other_max);
-    if (next.ratio_max > ratio_max) {
-      ratio_max = next.ratio_max;
-      worst = next.worst;
-    }
-    broken.insert(broken.end(), next.broken.begin(), next.broken.end());
+    const bool is_worse = next.ratio_max > ratio_max;
+    worst = is_worse ? next.worst : worst;
+    ratio_max = is_worse ? next.ratio_max : ratio_max;
+    return is_worse;
   }
 };
 
@@ -71,8 +75,8 @@ bool is_alternative_spent(const Equilibrium& equilibrium) {
          equilibrium.open_but_held_count == 0;
 }
 
-/// What all connections say together; the results of each as well, if the second answer is to stay.
-/// If that has gone before, nothing is known of how the two differ.
+/// What all connections say together, and which break; the results of each as well, if the second
+/// answer is to stay. If that has gone before, nothing is known of how the two differ.
 Loads add_up(const model::Robot& robot, host::Team& team, Assessment& assessment) {
   const ConnectionLaws laws(robot);
   const auto connections = robot.connections();
@@ -82,9 +86,15 @@ Loads add_up(const model::Robot& robot, host::Team& team, Assessment& assessment
       (equilibrium.displacement_low.empty() || equilibrium.open_but_held_count > 0);
   const bool is_kept = !is_alternative_spent(equilibrium);
   assessment.connections.resize(is_kept ? connections.size() : 0);
-  std::vector<Loads> parts;
-  team.map(connections.size(), parts, [&](std::size_t begin, std::size_t end) {
-    Loads part;
+
+  struct Chunk {
+    Loads loads;
+    std::vector<std::size_t> broken;
+  };
+
+  std::vector<Chunk> chunks;
+  team.map(connections.size(), chunks, [&](std::size_t begin, std::size_t end) {
+    Chunk chunk;
     auto connection = connections.from(begin);
     for (std::size_t i = begin; i < end; ++i, ++connection) {
       const model::Connection pair = *connection;
@@ -94,16 +104,21 @@ Loads add_up(const model::Robot& robot, host::Team& team, Assessment& assessment
       }
       const double ratio = is_kept ? assessment.connections[i].load_ratio
                                    : laws.load_ratio(pair, equilibrium.displacement, {});
-      part.add(i, ratio,
-               has_alternative ? laws.load_ratio(pair, equilibrium.alternative[base::at(pair.a)],
-                                                 equilibrium.alternative[base::at(pair.b)])
-                               : ratio);
+      const double other_ratio =
+          has_alternative ? laws.load_ratio(pair, equilibrium.alternative[base::at(pair.a)],
+                                            equilibrium.alternative[base::at(pair.b)])
+                          : ratio;
+      chunk.loads.add(i, ratio, other_ratio);
+      if (breaks(ratio)) {
+        chunk.broken.push_back(i);
+      }
     }
-    return part;
+    return chunk;
   });
   Loads all;
-  for (const Loads& part : parts) {
-    all.add(part);
+  for (const Chunk& chunk : chunks) {
+    all.add(chunk.loads);
+    assessment.broken.insert(assessment.broken.end(), chunk.broken.begin(), chunk.broken.end());
   }
   if (!is_kept && !has_alternative) {
     all.change = std::numeric_limits<double>::infinity();
@@ -128,38 +143,24 @@ void add_results(const model::Robot& robot, host::Team& team, Assessment& assess
 
 /// What one rank's connections say, for all others.
 struct RankLoads {
-  LoadRange range;
-  double ratio_max = 0;
-  double other_max = 0;
-  double change = 0;
-  std::size_t worst = 0;
+  Loads loads;
   std::array<base::Cell, 2> worst_ends = {};
   std::size_t connection_count = 0;
   std::size_t broken_count = 0;
 };
 
 /// Takes in what all ranks' connections say together; which are broken stays each rank's own.
-WholeLoads add_ranks(const model::Robot& robot, host::Ranks& ranks, Loads& loads) {
+WholeLoads add_ranks(const model::Robot& robot, std::size_t broken_count, Loads& loads) {
   const std::size_t count = robot.connections().size();
   const RankLoads mine = {
-      .range = loads.range,
-      .ratio_max = loads.ratio_max,
-      .other_max = loads.other_max,
-      .change = loads.change,
-      .worst = loads.worst,
+      .loads = loads,
       .worst_ends = count > 0 ? model::ends(robot, loads.worst) : std::array<base::Cell, 2>{},
       .connection_count = count,
-      .broken_count = loads.broken.size()};
+      .broken_count = broken_count};
   WholeLoads whole;
-  loads.ratio_max = -std::numeric_limits<double>::infinity();
-  for (const RankLoads& one : host::gather(ranks, std::span<const RankLoads>(&mine, 1))) {
-    loads.range = {.low = max_or_nan(loads.range.low, one.range.low),
-                   .high = max_or_nan(loads.range.high, one.range.high)};
-    loads.change = std::max(loads.change, one.change);
-    loads.other_max = std::max(loads.other_max, one.other_max);
-    if (one.ratio_max > loads.ratio_max) {
-      loads.ratio_max = one.ratio_max;
-      loads.worst = one.worst;
+  loads = {};
+  for (const RankLoads& one : host::gather(robot.ranks(), std::span<const RankLoads>(&mine, 1))) {
+    if (loads.add(one.loads)) {
       whole.worst = one.worst_ends;
     }
     whole.connection_count += one.connection_count;
@@ -282,31 +283,30 @@ double weak_spring_error(const model::Robot& robot, const Equilibrium& equilibri
               : kEnergyFactor * model::load_ratio_per_energy_norm(robot) * energy);
 }
 
-LoadRange assess_loads(const model::Robot& robot, const solver::EquilibriumOptions& options,
+LoadRange assess_loads(const Situation& here, const solver::EquilibriumOptions& options,
                        Assessment& assessment) {
-  if (host::all(options.ranks(), robot.connections().empty())) {
+  if (!here.has_connections) {
     return {};
   }
+  const model::Robot& robot = here.robot;
   host::Team team(options.thread_count, robot.connections().size());
   Loads loads = add_up(robot, team, assessment);
   if (is_alternative_spent(assessment.equilibrium)) {
     assessment.equilibrium.alternative = std::vector<base::Vec6<double>>();
   }
-  if (options.part != nullptr) {
-    assessment.whole = add_ranks(robot, *options.ranks(), loads);
+  if (robot.ranks().is_shared()) {
+    assessment.whole = add_ranks(robot, assessment.broken.size(), loads);
   }
   assessment.load_ratio_change = loads.change;
   const double margin = error_margin(robot, options, assessment.equilibrium, loads);
   assessment.load_ratio_range = {.low = loads.range.low - margin,
                                  .high = loads.range.high + margin};
-  assessment.broken = std::move(loads.broken);
-  if (is_nan(loads.range)) {
-    return between_answers(loads);
-  }
-  assessment.load_ratio_max = loads.ratio_max;
-  if (is_pulled_apart(loads.ratio_max, assessment)) {
-    assessment.worst = loads.worst;
-    assessment.weight_factor = 1 / loads.ratio_max;
+  if (!is_nan(loads.range)) {
+    assessment.load_ratio_max = loads.ratio_max;
+    if (is_pulled_apart(loads.ratio_max, assessment)) {
+      assessment.worst = loads.worst;
+      assessment.weight_factor = 1 / loads.ratio_max;
+    }
   }
   return between_answers(loads);
 }
@@ -324,8 +324,7 @@ void assess_connections(const model::Robot& robot, int thread_count, Assessment&
                            [&](std::size_t i) { return assessment.connections[i].load_ratio; });
 }
 
-std::optional<OpenGaps> find_open_gaps(const model::Robot& robot, const Equilibrium& equilibrium,
-                                       host::Ranks* ranks) {
+std::optional<OpenGaps> find_open_gaps(const model::Robot& robot, const Equilibrium& equilibrium) {
   const bool is_limited = std::ranges::any_of(
       robot.connectors(), [](const auto& law) { return std::isfinite(law.gap_limit_mm); });
   if (!is_limited) {
@@ -347,9 +346,7 @@ std::optional<OpenGaps> find_open_gaps(const model::Robot& robot, const Equilibr
       gaps.ends = model::ends(robot, i);
     }
   }
-  if (ranks != nullptr) {
-    gaps = widest_of_all(*ranks, gaps);
-  }
+  gaps = widest_of_all(robot.ranks(), gaps);
   return gaps.count > 0 ? std::optional(gaps) : std::nullopt;
 }
 

@@ -4,10 +4,13 @@
 
 #include <optional>
 
-#include "holdfast/verdict/assessment.hpp"
+#include "situation.hpp"
 
 /// What an equilibrium says of the connections (Sec. III-D).
 namespace holdfast::verdict {
+
+/// What load ratios may be off by rounding alone, as a share of the largest or of 1.
+inline constexpr double kRounding = 1e-12;
 
 /// What multigrid's load ratios may be off by, as a share of the largest or of 1: what it promises
 /// at this tolerance, or what very soft beams take of it.
@@ -24,7 +27,7 @@ double weak_spring_error(const model::Robot& robot, const solver::Equilibrium& e
 /// largest load ratio, its range and what breaks. Returns what lies between the largest load ratios
 /// of the equilibrium's two answers. Multigrid's second one, unless feet are ambiguous, is given
 /// back: it is for the range alone.
-LoadRange assess_loads(const model::Robot& robot, const solver::EquilibriumOptions& options,
+LoadRange assess_loads(const Situation& here, const solver::EquilibriumOptions& options,
                        Assessment& assessment);
 
 /// After assess_loads(): fills in every connection's result, unless they are there, and sorts those
@@ -33,6 +36,6 @@ void assess_connections(const model::Robot& robot, int thread_count, Assessment&
 
 /// The gaps that are too wide; none if no connection has a limit, or none is exceeded.
 std::optional<OpenGaps> find_open_gaps(const model::Robot& robot,
-                                       const solver::Equilibrium& equilibrium, host::Ranks* ranks);
+                                       const solver::Equilibrium& equilibrium);
 
 }  // namespace holdfast::verdict

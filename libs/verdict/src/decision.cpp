@@ -5,7 +5,6 @@
 #include <cmath>
 #include <optional>
 #include <span>
-#include <utility>
 
 #include "several_solutions.hpp"
 #include "stability.hpp"
@@ -24,39 +23,30 @@ Reason toppling_reason(const RigidBody& body) {
   return {.code = ReasonCode::kTopples, .numbers = {a.x, a.y, b.x, b.y, -*body.margin_mm}};
 }
 
-/// Why the loads of a stable robot are not known; none if they are.
-std::optional<Reason> find_obstacle(std::size_t module_count, const Equilibrium& equilibrium) {
-  switch (equilibrium.outcome) {
-    case Outcome::kSettled:
-      return std::nullopt;
-    case Outcome::kTooLarge:
-      return Reason{.code = ReasonCode::kTooManyModules,
-                    .numbers = {static_cast<double>(module_count)}};
-    case Outcome::kTooSlow:
-      return Reason{.code = ReasonCode::kNoDigitsLeft};
-    case Outcome::kSingular:
-      return Reason{.code = ReasonCode::kSingularStiffness,
-                    .numbers = {static_cast<double>(equilibrium.steps)}};
-    default:
-      return Reason{.code = ReasonCode::kNoEquilibrium,
-                    .numbers = {static_cast<double>(equilibrium.steps)}};
-  }
-}
-
-/// Why the loads do not say whether anything breaks; none if they do.
-std::optional<Reason> find_doubt(const Assessment& assessment) {
+/// Why the loads of a stable robot do not say whether anything breaks; none if they do.
+std::optional<Reason> find_doubt(const Situation& here, const Assessment& assessment) {
+  const Equilibrium& equilibrium = assessment.equilibrium;
   const LoadRange& range = assessment.load_ratio_range;
   const bool is_broken = breaks(range.low);
-  if (std::isnan(range.low) || std::isnan(range.high)) {
-    return Reason{.code = ReasonCode::kLoadNotANumber};
+  std::optional<Reason> doubt;
+  if (equilibrium.outcome == Outcome::kTooLarge) {
+    doubt = {.code = ReasonCode::kTooManyModules,
+             .numbers = {static_cast<double>(here.module_count)}};
+  } else if (equilibrium.outcome == Outcome::kTooSlow) {
+    doubt = {.code = ReasonCode::kNoDigitsLeft};
+  } else if (equilibrium.outcome != Outcome::kSettled) {
+    const bool is_singular = equilibrium.outcome == Outcome::kSingular;
+    doubt = {.code = is_singular ? ReasonCode::kSingularStiffness : ReasonCode::kNoEquilibrium,
+             .numbers = {static_cast<double>(equilibrium.steps)}};
+  } else if (std::isnan(range.low) || std::isnan(range.high)) {
+    doubt = {.code = ReasonCode::kLoadNotANumber};
+  } else if (!std::isfinite(range.low) || !std::isfinite(range.high) ||
+             breaks(range.high) != is_broken) {
+    doubt = {.code = ReasonCode::kLimitInRange, .numbers = {range.low, range.high}};
+  } else if (assessment.several && !do_agree(*assessment.several, is_broken)) {
+    doubt = reason_of(ReasonCode::kSolutionsDisagree, *assessment.several);
   }
-  if (!std::isfinite(range.low) || !std::isfinite(range.high) || breaks(range.high) != is_broken) {
-    return Reason{.code = ReasonCode::kLimitInRange, .numbers = {range.low, range.high}};
-  }
-  if (assessment.several && !do_agree(*assessment.several, is_broken)) {
-    return reason_of(ReasonCode::kSolutionsDisagree, *assessment.several);
-  }
-  return std::nullopt;
+  return doubt;
 }
 
 std::size_t connection_count(const Assessment& assessment) {
@@ -95,28 +85,53 @@ Reason breaking_reason(const Assessment& assessment) {
           .cells = worst_cells(assessment)};
 }
 
-void decide_stable(const model::Robot& robot, const model::RobotPart* part,
-                   Assessment& assessment) {
-  const std::size_t count = model::whole_module_count(robot, part);
-  auto obstacle = find_obstacle(count, assessment.equilibrium);
-  if (!obstacle) {
-    obstacle = find_doubt(assessment);
+/// The cell of a slipping module, which may be another rank's.
+std::vector<base::Cell> slip_cells(const model::Robot& robot, const Slip& slip) {
+  if (!robot.ranks().is_shared()) {
+    return {};
   }
-  if (obstacle) {
-    assessment.reasons.push_back(*std::move(obstacle));
-  } else if (breaks(assessment.load_ratio_range.low)) {
-    assessment.verdict = Verdict::kOverload;
-    assessment.reasons.push_back(breaking_reason(assessment));
-  } else if (assessment.lean && assessment.lean->margin_mm <= 0) {
-    assessment.is_stable = false;
-    assessment.reasons.push_back(
-        {.code = ReasonCode::kDisplacedMass,
-         .numbers = {assessment.lean->shift_mm, *assessment.simplified.margin_mm,
-                     -assessment.lean->margin_mm}});
+  const base::Cell mine =
+      robot.ranks().rank() == slip.rank ? robot.modules()[slip.module].cell : base::Cell{};
+  return {host::gather(robot.ranks(), std::span<const base::Cell>(&mine, 1))[base::at(slip.rank)]};
+}
+
+/// Why a robot that the rigid body holds may not stay by the model; none if it does. With supports
+/// anywhere neither of both answers is enough to be safe. Without equilibrium the model has none.
+std::optional<Reason> find_fall(const Situation& here, const Assessment& assessment) {
+  const ModelStability& model = assessment.model;
+  auto slip = assessment.equilibrium.outcome == Outcome::kSettled
+                  ? find_slip(here.robot, assessment.equilibrium)
+                  : std::nullopt;
+  slip = slip ? slip : model.slip_otherwise;
+  std::optional<Reason> fall;
+  if (here.rule == StabilityRule::kContactForces && model.is_settled && !model.is_stable) {
+    fall = {.code = ReasonCode::kModelFalls};
+  } else if (model.falls_otherwise && !breaks(assessment.load_ratio_range.low)) {
+    fall = {.code = ReasonCode::kStatesDisagree};
+  } else if (slip) {
+    fall = {.code = ReasonCode::kMaySlip,
+            .numbers = {static_cast<double>(slip->module), slip->ratio, slip->friction},
+            .cells = slip_cells(here.robot, *slip)};
+  }
+  return fall;
+}
+
+/// Why a robot that the rigid body does not hold is not known to stay.
+Reason falling_reason(const Assessment& assessment) {
+  using limit::RigidAnswer;
+  const limit::RigidStability& rigid = assessment.rigid;
+  Reason reason;
+  if (assessment.simplified.edge && assessment.simplified.margin_mm) {
+    reason = toppling_reason(assessment.simplified);
+  } else if (rigid.answer == RigidAnswer::kUndecided) {
+    reason.code = ReasonCode::kRigidUndecided;
+  } else if (rigid.answer == RigidAnswer::kNothingToSpare) {
+    reason.code = ReasonCode::kBalances;
   } else {
-    assessment.verdict = Verdict::kSafe;
-    assessment.reasons.push_back(holding_reason(assessment));
+    reason = {.code = ReasonCode::kFalls,
+              .quoted = rigid.motion ? limit::text(*rigid.motion) : std::string()};
   }
+  return reason;
 }
 
 void add_contact_remarks(Assessment& assessment) {
@@ -144,82 +159,16 @@ void add_contact_remarks(Assessment& assessment) {
   }
 }
 
-/// The cell of a slipping module, which may be another rank's.
-std::vector<base::Cell> slip_cells(const model::Robot& robot, const model::RobotPart* part,
-                                   const Slip& slip) {
-  if (part == nullptr) {
-    return {};
-  }
-  const base::Cell mine =
-      part->ranks->rank() == slip.rank ? robot.modules()[slip.module].cell : base::Cell{};
-  return {host::gather(*part->ranks, std::span<const base::Cell>(&mine, 1))[base::at(slip.rank)]};
-}
-
-/// Of the answers with supports anywhere neither is enough to be safe. Without equilibrium the
-/// model has none.
-void heed_model(const model::Robot& robot, const model::RobotPart* part, Assessment& assessment) {
-  if (!assessment.is_stable) {
-    return;
-  }
-  auto slip = assessment.equilibrium.outcome == Outcome::kSettled
-                  ? find_slip(robot, assessment.equilibrium, part)
-                  : std::nullopt;
-  if (!slip) {
-    slip = assessment.model.slip_otherwise;
-  }
-  if (assessment.stability_rule == StabilityRule::kContactForces && assessment.model.is_settled &&
-      !assessment.model.is_stable) {
-    assessment.is_stable = false;
-    assessment.verdict = Verdict::kUnstable;
-    assessment.reasons.push_back({.code = ReasonCode::kModelFalls});
-  } else if (assessment.model.falls_otherwise && !breaks(assessment.load_ratio_range.low)) {
-    assessment.is_stable = false;
-    assessment.reasons.push_back({.code = ReasonCode::kStatesDisagree});
-  } else if (slip) {
-    assessment.is_stable = false;
-    assessment.reasons.push_back(
-        {.code = ReasonCode::kMaySlip,
-         .numbers = {static_cast<double>(slip->module), slip->ratio, slip->friction},
-         .cells = slip_cells(robot, part, *slip)});
-  }
-}
-
-/// The verdict on a robot that the rigid body does not hold.
-void decide_falling(Assessment& assessment) {
-  using limit::RigidAnswer;
-  const limit::RigidStability& rigid = assessment.rigid;
-  assessment.verdict =
-      rigid.answer == RigidAnswer::kUndecided ? Verdict::kUndecided : Verdict::kUnstable;
-  if (assessment.simplified.edge && assessment.simplified.margin_mm) {
-    assessment.reasons.push_back(toppling_reason(assessment.simplified));
-  } else if (rigid.answer == RigidAnswer::kUndecided) {
-    assessment.reasons.push_back({.code = ReasonCode::kRigidUndecided});
-  } else if (rigid.answer == RigidAnswer::kNothingToSpare) {
-    assessment.reasons.push_back({.code = ReasonCode::kBalances});
-  } else {
-    assessment.reasons.push_back(
-        {.code = ReasonCode::kFalls,
-         .quoted = rigid.motion ? limit::text(*rigid.motion) : std::string()});
-  }
-}
-
-/// The ends of the connection that opens most, where its index is another rank's.
-std::vector<base::Cell> gap_cells(const OpenGaps& gaps, const model::RobotPart* part) {
-  if (part == nullptr) {
-    return {};
-  }
-  return {gaps.ends.begin(), gaps.ends.end()};
-}
-
 /// What is no reason for the verdict, but belongs to its loads.
-void add_load_remarks(const model::Robot& robot, const model::RobotPart* part,
-                      Assessment& assessment) {
-  if (assessment.gaps) {
-    assessment.reasons.push_back({.code = ReasonCode::kGapsOpen,
-                                  .numbers = {static_cast<double>(assessment.gaps->count),
-                                              static_cast<double>(assessment.gaps->worst),
-                                              assessment.gaps->gap_mm, assessment.gaps->limit_mm},
-                                  .cells = gap_cells(*assessment.gaps, part)});
+void add_load_remarks(const Situation& here, Assessment& assessment) {
+  if (const auto& gaps = assessment.gaps) {
+    Reason reason = {.code = ReasonCode::kGapsOpen,
+                     .numbers = {static_cast<double>(gaps->count), static_cast<double>(gaps->worst),
+                                 gaps->gap_mm, gaps->limit_mm}};
+    if (assessment.whole) {  // The index is another rank's.
+      reason.cells = {gaps->ends.begin(), gaps->ends.end()};
+    }
+    assessment.reasons.push_back(std::move(reason));
   }
   const double margin = assessment.simplified.margin_mm.value_or(0);
   if (assessment.lean && assessment.lean->margin_mm > 0 &&
@@ -228,25 +177,55 @@ void add_load_remarks(const model::Robot& robot, const model::RobotPart* part,
         {.code = ReasonCode::kMassMoves,
          .numbers = {assessment.lean->shift_mm, margin, assessment.lean->margin_mm}});
   }
-  const bool has_payloads = host::any(model::ranks_of(part), robot.has_payloads());
-  if (has_payloads && assessment.worst) {
+  if (here.has_payloads && assessment.worst) {
     assessment.reasons.push_back({.code = ReasonCode::kLoadsTogether});
   }
 }
 
+/// A verdict, whether the robot stays, and why.
+struct Decision {
+  Verdict verdict = Verdict::kUndecided;
+  bool is_stable = false;
+  Reason reason;
+};
+
+/// What docs/theory.md defines as the verdict: the first that holds.
+Decision decision_on(const Situation& here, const Assessment& assessment) {
+  if (!assessment.is_stable) {
+    const bool is_known = assessment.rigid.answer != limit::RigidAnswer::kUndecided;
+    return {.verdict = is_known ? Verdict::kUnstable : Verdict::kUndecided,
+            .reason = falling_reason(assessment)};
+  }
+  const bool is_bonded = assessment.contact_model == ContactModel::kBonded;
+  if (auto fall = is_bonded ? std::nullopt : find_fall(here, assessment)) {
+    const bool is_known = fall->code == ReasonCode::kModelFalls;
+    return {.verdict = is_known ? Verdict::kUnstable : Verdict::kUndecided,
+            .reason = *std::move(fall)};
+  }
+  if (auto doubt = find_doubt(here, assessment)) {
+    return {.is_stable = true, .reason = *std::move(doubt)};
+  }
+  if (breaks(assessment.load_ratio_range.low)) {
+    return {
+        .verdict = Verdict::kOverload, .is_stable = true, .reason = breaking_reason(assessment)};
+  }
+  if (assessment.lean && assessment.lean->margin_mm <= 0) {
+    return {.reason = {.code = ReasonCode::kDisplacedMass,
+                       .numbers = {assessment.lean->shift_mm, *assessment.simplified.margin_mm,
+                                   -assessment.lean->margin_mm}}};
+  }
+  return {.verdict = Verdict::kSafe, .is_stable = true, .reason = holding_reason(assessment)};
+}
+
 }  // namespace
 
-void decide(const model::Robot& robot, const model::RobotPart* part, Assessment& assessment) {
-  if (assessment.contact_model != ContactModel::kBonded) {
-    heed_model(robot, part, assessment);
-  }
-  if (assessment.is_stable) {
-    decide_stable(robot, part, assessment);
-  } else if (assessment.reasons.empty()) {
-    decide_falling(assessment);
-  }
+void decide(const Situation& here, Assessment& assessment) {
+  Decision decision = decision_on(here, assessment);
+  assessment.verdict = decision.verdict;
+  assessment.is_stable = decision.is_stable;
+  assessment.reasons = {std::move(decision.reason)};
   add_contact_remarks(assessment);
-  add_load_remarks(robot, part, assessment);
+  add_load_remarks(here, assessment);
 }
 
 }  // namespace holdfast::verdict

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "holdfast/verdict/assessment.hpp"
+#include "situation.hpp"
 
 namespace holdfast::verdict {
 
 /// Verdict and reasons, from an assessment that has all else.
-void decide(const model::Robot& robot, const model::RobotPart* part, Assessment& assessment);
+void decide(const Situation& here, Assessment& assessment);
 
 }  // namespace holdfast::verdict

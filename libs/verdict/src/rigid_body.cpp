@@ -10,7 +10,9 @@
 #include <utility>
 
 #include "exact_sign.hpp"
-#include "floating_body.hpp"
+#include "holdfast/base/lattice.hpp"
+#include "holdfast/model/mass.hpp"
+#include "situation.hpp"
 
 namespace holdfast::verdict {
 namespace {
@@ -28,25 +30,21 @@ Area turn(const Point& a, const Point& b, const Point& c, std::int64_t count = 1
   return (b.x - a.x) * (c.y - count * a.y) - (b.y - a.y) * (c.x - count * a.x);
 }
 
-/// Andrew's monotone chain; counter-clockwise, no three points on one line.
-std::vector<Point> convex_hull(std::vector<Point> points, const Measure& measure) {
-  if (points.empty()) {
+/// Andrew's monotone chain; counter-clockwise. Of points in the order of `is_before` it leaves out
+/// those that are the same as the one before, and those that are no corner between two others.
+template <class Item, class IsBefore, class IsSame, class IsCorner>
+std::vector<Item> chain_around(std::vector<Item> points, const IsBefore& is_before,
+                               const IsSame& is_same, const IsCorner& is_corner) {
+  std::ranges::sort(points, is_before);
+  points.erase(std::unique(points.begin(), points.end(), is_same), points.end());
+  if (points.size() < 2) {
     return points;
   }
-  const auto compare = [&](const Point& a, const Point& b) {
-    const int x = measure.sign(a.x - b.x);
-    return x != 0 ? x : measure.sign(a.y - b.y);
-  };
-  std::ranges::sort(points, [&](const Point& a, const Point& b) { return compare(a, b) < 0; });
-  points.erase(std::unique(points.begin(), points.end(),
-                           [&](const Point& a, const Point& b) { return compare(a, b) == 0; }),
-               points.end());
-  std::vector<Point> hull;
+  std::vector<Item> hull;
   for (int pass = 0; pass < 2; ++pass) {
     const std::size_t start = hull.size();
-    for (const Point& point : points) {
-      while (hull.size() >= start + 2 &&
-             measure.sign(turn(hull[hull.size() - 2], hull.back(), point)) <= 0) {
+    for (const Item& point : points) {
+      while (hull.size() >= start + 2 && !is_corner(hull[hull.size() - 2], hull.back(), point)) {
         hull.pop_back();
       }
       hull.push_back(point);
@@ -55,6 +53,20 @@ std::vector<Point> convex_hull(std::vector<Point> points, const Measure& measure
     std::ranges::reverse(points);
   }
   return hull;
+}
+
+/// No three points on one line.
+std::vector<Point> convex_hull(std::vector<Point> points, const Measure& measure) {
+  const auto compare = [&](const Point& a, const Point& b) {
+    const int x = measure.sign(a.x - b.x);
+    return x != 0 ? x : measure.sign(a.y - b.y);
+  };
+  return chain_around(
+      std::move(points), [&](const Point& a, const Point& b) { return compare(a, b) < 0; },
+      [&](const Point& a, const Point& b) { return compare(a, b) == 0; },
+      [&](const Point& a, const Point& b, const Point& c) {
+        return measure.sign(turn(a, b, c)) > 0;
+      });
 }
 
 /// Feet in a row along x: the first and the last.
@@ -72,20 +84,18 @@ void add_row(const Row& more, std::map<std::int32_t, Row>& rows) {
 
 /// Corners of the feet, as far as they can be corners of the polygon: of every row along x those at
 /// its two ends.
-std::vector<Point> support_corners(const model::Robot& robot, host::Ranks* ranks) {
+std::vector<Point> support_corners(const model::Robot& robot) {
   std::map<std::int32_t, Row> rows;
   for (const model::Facet& facet : robot.facets()) {
     const auto [x, y, z] = robot.modules()[base::at(facet.module)].cell;
     add_row({.y = y, .first = x, .last = x}, rows);
   }
-  if (ranks != nullptr) {
-    std::vector<Row> mine;
-    for (const auto& [y, row] : rows) {
-      mine.push_back(row);
-    }
-    for (const Row& row : host::gather<Row>(*ranks, mine)) {
-      add_row(row, rows);
-    }
+  std::vector<Row> mine;
+  for (const auto& [y, row] : rows) {
+    mine.push_back(row);
+  }
+  for (const Row& row : host::gather<Row>(robot.ranks(), mine)) {
+    add_row(row, rows);
   }
   std::vector<Point> corners;
   for (const auto& [y, row] : rows) {
@@ -151,43 +161,31 @@ struct Cubes {
   }
 };
 
-/// Twice the sums of the modules' coordinates, and how many there are; of all ranks' modules.
-struct CubeSums {
-  std::int64_t x = 0;
-  std::int64_t y = 0;
-  std::int64_t count = 0;
-};
-
-CubeSums cube_sums(const model::Robot& robot, const model::RobotPart* part) {
-  const std::size_t count = model::own_module_count(robot, part);
-  CubeSums mine{.count = static_cast<std::int64_t>(count)};
-  for (const model::Module& module : robot.modules().first(count)) {
-    mine.x += 2 * std::int64_t{module.cell.x};
-    mine.y += 2 * std::int64_t{module.cell.y};
+/// Twice the sums of all ranks' modules' coordinates.
+Point plan_sum(const model::Robot& robot) {
+  Point mine;
+  for (const model::Module& module : robot.modules().first(robot.own_count())) {
+    mine.x.pitches += 2 * std::int64_t{module.cell.x};
+    mine.y.pitches += 2 * std::int64_t{module.cell.y};
   }
-  if (part == nullptr) {
-    return mine;
-  }
-  CubeSums all;
-  for (const CubeSums& one : host::gather(*part->ranks, std::span<const CubeSums>(&mine, 1))) {
-    all.x += one.x;
-    all.y += one.y;
-    all.count += one.count;
+  Point all;
+  for (const Point& one : host::gather(robot.ranks(), std::span<const Point>(&mine, 1))) {
+    all.x.pitches += one.x.pitches;
+    all.y.pitches += one.y.pitches;
   }
   return all;
 }
 
-Cubes cubes_of(const model::Robot& robot, const model::RobotPart* part = nullptr) {
-  const CubeSums sums = cube_sums(robot, part);
+Cubes cubes_of(const Situation& here) {
+  const model::Robot& robot = here.robot;
   const model::Material& material = robot.material();
   Cubes cubes{.measure = Measure(material.pitch_mm, material.facet_mm),
               .pitch_mm = material.pitch_mm,
               .facet_mm = material.facet_mm,
-              .is_fixed = host::any(model::ranks_of(part), robot.fixed_count() > 0),
-              .count = sums.count};
-  cubes.mass.x.pitches = sums.x;
-  cubes.mass.y.pitches = sums.y;
-  cubes.hull = convex_hull(support_corners(robot, model::ranks_of(part)), cubes.measure);
+              .is_fixed = here.rule == StabilityRule::kHeld,
+              .count = static_cast<std::int64_t>(here.module_count),
+              .mass = plan_sum(robot)};
+  cubes.hull = convex_hull(support_corners(robot), cubes.measure);
   return cubes;
 }
 
@@ -210,43 +208,143 @@ RigidBody exact_body(const Cubes& cubes) {
   return body;
 }
 
-/// Whether exact_body() decides.
-bool is_exact(const model::Robot& robot, const model::RobotPart* part = nullptr) {
-  host::Ranks* const ranks = model::ranks_of(part);
-  const double mass_max = host::max(ranks, robot.mass(0));  // All ranks ask.
-  const bool is_alike = robot.is_uniform() && robot.mass(0) == mass_max;
-  const bool is_plain = robot.lattice() == base::kCubic && is_alike && robot.carried().empty();
-  const bool has_facets = host::any(ranks, !robot.facets().empty());
-  return host::all(ranks, is_plain) && (!has_facets || is_on_flat_floor(robot, part));
+/// Twice the signed area of the triangle a, b, c, positive if c lies left of a -> b.
+double turn(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+/// Signed distance of a point to the line a -> b, positive on its left.
+double distance(const PlanPoint& a, const PlanPoint& b, const PlanPoint& point) {
+  return turn(a, b, point) / std::hypot(b.x - a.x, b.y - a.y);
+}
+
+/// Points nearer than `tie` to an edge are none.
+std::vector<PlanPoint> convex_hull(std::vector<PlanPoint> points, double tie) {
+  return chain_around(
+      std::move(points),
+      [](const PlanPoint& a, const PlanPoint& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; },
+      [&](const PlanPoint& a, const PlanPoint& b) {
+        return std::hypot(a.x - b.x, a.y - b.y) <= tie;
+      },
+      [&](const PlanPoint& a, const PlanPoint& b, const PlanPoint& c) {
+        return !(distance(a, c, b) >= -tie);
+      });
+}
+
+/// The frame of a floor's facets is the global one.
+void add_corners(const std::array<double, 3>& centre, double half_width,
+                 std::vector<PlanPoint>& corners) {
+  for (const double x : {-half_width, half_width}) {
+    for (const double y : {-half_width, half_width}) {
+      corners.push_back({centre[0] + x, centre[1] + y});
+    }
+  }
+}
+
+/// What floating_body() needs to know of a robot.
+struct FloatingBody {
+  double kg = 0;
+  /// A node of the robot, that of any module: sums over a thousand modules that are far from where
+  /// coordinates begin would else lose what decides.
+  std::array<double, 3> origin_mm{};
+  std::array<double, 3> moment_kgmm{};  ///< Mass times place from the origin, over all modules.
+  bool is_held = false;                 ///< By a fixed module or a bonded facet.
+  bool is_flat = false;                 ///< On a flat floor.
+  double foot_half_width_mm = 0;
+  double tie_mm = 0;                    ///< Less is nothing.
+  std::vector<PlanPoint> polygon = {};  ///< Counter-clockwise.
+};
+
+/// Adds a module whose node is there.
+void add_module(FloatingBody& body, const std::array<double, 3>& node_mm, double mass_kg,
+                bool is_on_floor) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    body.moment_kgmm[k] += mass_kg * (node_mm[k] - body.origin_mm[k]);
+  }
+  body.kg += mass_kg;
+  if (is_on_floor) {
+    body.is_flat = true;
+    add_corners(node_mm, body.foot_half_width_mm, body.polygon);
+    body.polygon = convex_hull(std::move(body.polygon), body.tie_mm);
+  }
+}
+
+FloatingBody body_of(const Situation& here) {
+  const model::Robot& robot = here.robot;
+  host::Ranks& ranks = robot.ranks();
+  FloatingBody body{.is_held = here.rule == StabilityRule::kHeld,
+                    .is_flat = here.is_on_flat_floor,
+                    .foot_half_width_mm = robot.foot_half_width_mm(),
+                    .tie_mm = kMarginTie * robot.material().pitch_mm};
+  const base::NodePlaces node_mm(robot.lattice(), robot.material().pitch_mm);
+  body.origin_mm = model::common_node_mm(robot);
+  for (std::size_t i = 0; i < robot.own_count(); ++i) {
+    add_module(body, node_mm(robot.modules()[i].cell), robot.mass(i), false);
+  }
+  for (const model::CarriedMass& carried : robot.carried()) {
+    std::array<double, 3> place = node_mm(carried.carrier);
+    for (std::size_t k = 0; k < 3; ++k) {
+      place[k] += carried.offset_mm[k];
+    }
+    add_module(body, place, carried.mass_kg, false);
+  }
+  body.kg = host::sum(ranks, body.kg);
+  for (double& moment : body.moment_kgmm) {
+    moment = host::sum(ranks, moment);
+  }
+  if (body.is_flat) {
+    std::vector<PlanPoint> corners;
+    for (const model::Facet& facet : robot.facets()) {
+      add_corners(node_mm(robot.modules()[base::at(facet.module)].cell), body.foot_half_width_mm,
+                  corners);
+    }
+    body.polygon = convex_hull(std::move(corners), body.tie_mm);
+    if (ranks.is_shared()) {
+      body.polygon = convex_hull(host::gather<PlanPoint>(ranks, body.polygon), body.tie_mm);
+    }
+  }
+  return body;
+}
+
+/// The rigid body in double, for any lattice and masses.
+RigidBody floating_body(const FloatingBody& given) {
+  RigidBody body;
+  body.centre_of_mass = {given.origin_mm[0] + given.moment_kgmm[0] / given.kg,
+                         given.origin_mm[1] + given.moment_kgmm[1] / given.kg};
+  body.is_stable = given.is_held;
+  if (!given.is_flat) {
+    return body;
+  }
+  body.polygon = given.polygon;
+  if (body.is_stable) {
+    return body;
+  }
+  double margin = std::numeric_limits<double>::infinity();
+  const std::size_t count = body.polygon.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const PlanPoint& a = body.polygon[i];
+    const PlanPoint& b = body.polygon[(i + 1) % count];
+    // A single point is an edge without length: over it, nothing is to spare.
+    const double here = count > 1
+                            ? distance(a, b, body.centre_of_mass)
+                            : -std::hypot(a.x - body.centre_of_mass.x, a.y - body.centre_of_mass.y);
+    if (here < margin) {
+      margin = here;
+      body.edge = {a, b};
+    }
+  }
+  body.margin_mm = std::abs(margin) <= given.tie_mm ? 0 : margin;
+  body.is_stable = *body.margin_mm > 0;
+  return body;
 }
 
 }  // namespace
 
-bool is_on_flat_floor(const model::Robot& robot, const model::RobotPart* part) {
-  host::Ranks* const ranks = model::ranks_of(part);
-  const auto& [x, y, z] = robot.gravity();
-  const bool has_facets = host::any(ranks, !robot.facets().empty());
-  const bool has_payloads = host::any(ranks, robot.has_payloads());
-  if (!has_facets || x != 0 || y != 0 || z >= 0 || has_payloads) {
-    return false;
-  }
-  const base::Direction down = base::down(robot.lattice());
-  const auto level = [&](const model::Facet& facet) {
-    return robot.modules()[base::at(facet.module)].cell.z;
-  };
-  const auto first = robot.facets().empty() ? std::numeric_limits<std::int32_t>::min()
-                                            : level(robot.facets().front());
-  const double highest = host::max(ranks, first);
-  return host::all(ranks, std::ranges::all_of(robot.facets(), [&](const model::Facet& facet) {
-                     return facet.direction == down && !facet.is_bonded() &&
-                            level(facet) == highest;
-                   }));
+RigidBody rigid_body(const Situation& here) {
+  return here.is_exact ? exact_body(cubes_of(here)) : floating_body(body_of(here));
 }
 
-RigidBody assess_rigid_body(const model::Robot& robot, const model::RobotPart* part) {
-  return is_exact(robot, part) ? exact_body(cubes_of(robot, part))
-                               : floating_body(body_of(robot, part));
-}
+RigidBody assess_rigid_body(const model::Robot& robot) { return rigid_body(Situation(robot)); }
 
 struct GrowingRigidBody::Exact {
   Cubes cubes;
@@ -259,11 +357,12 @@ struct GrowingRigidBody::Floating {
 };
 
 GrowingRigidBody::GrowingRigidBody(const model::Robot& robot, double mass_kg) {
-  if (is_exact(robot) && robot.mass(0) == mass_kg) {
-    exact_ = std::make_unique<Exact>(Exact{cubes_of(robot)});
+  const Situation here(robot);
+  if (here.is_exact && robot.mass(0) == mass_kg) {
+    exact_ = std::make_unique<Exact>(Exact{cubes_of(here)});
   } else {
     floating_ = std::make_unique<Floating>(
-        Floating{.body = body_of(robot),
+        Floating{.body = body_of(here),
                  .node_mm = base::NodePlaces(robot.lattice(), robot.material().pitch_mm),
                  .mass_kg = mass_kg});
   }

@@ -17,8 +17,7 @@ namespace {
 using Displacements = std::vector<base::Vec6<double>>;
 
 /// Largest load ratio, of all ranks' parts; NaN if one is. `low` as of a Solution.
-double load_ratio_max(const model::Robot& robot, host::Ranks* ranks, const Displacements& u,
-                      const Displacements& low) {
+double load_ratio_max(const model::Robot& robot, const Displacements& u, const Displacements& low) {
   const ConnectionLaws laws(robot);
   double largest = -std::numeric_limits<double>::infinity();
   for (const model::Connection& pair : robot.connections()) {
@@ -28,10 +27,8 @@ double load_ratio_max(const model::Robot& robot, host::Ranks* ranks, const Displ
       break;
     }
   }
-  if (host::any(ranks, std::isnan(largest))) {
-    return std::numeric_limits<double>::quiet_NaN();
-  }
-  return host::max(ranks, largest);
+  const bool is_any_nan = host::any(robot.ranks(), std::isnan(largest));
+  return is_any_nan ? std::numeric_limits<double>::quiet_NaN() : host::max(robot.ranks(), largest);
 }
 
 void widen(LoadRange& range, double ratio) {
@@ -41,11 +38,11 @@ void widen(LoadRange& range, double ratio) {
 
 /// Takes in what a solution and its alternative say. Beside 106 bits the alternative says something
 /// only if feet are ambiguous.
-void widen(LoadRange& range, const model::Robot& robot, host::Ranks* ranks,
-           const solver::Solution& solution, bool is_ambiguous = false) {
-  widen(range, load_ratio_max(robot, ranks, solution.displacement, solution.displacement_low));
+void widen(LoadRange& range, const model::Robot& robot, const solver::Solution& solution,
+           bool is_ambiguous = false) {
+  widen(range, load_ratio_max(robot, solution.displacement, solution.displacement_low));
   if (solution.displacement_low.empty() || is_ambiguous) {
-    widen(range, load_ratio_max(robot, ranks, solution.alternative, {}));
+    widen(range, load_ratio_max(robot, solution.alternative, {}));
   }
 }
 
@@ -62,33 +59,30 @@ bool is_on_side(const LoadRange& range, double error, bool is_broken) {
 
 }  // namespace
 
-void compare_solutions(const model::Robot& robot, solver::EquilibriumSolver& solver, double gamma,
+void compare_solutions(const Situation& here, solver::EquilibriumSolver& solver, double gamma,
                        const solver::EquilibriumOptions& options, const LoadRange& answers,
                        Assessment& assessment) {
-  host::Ranks* const ranks = options.ranks();
-  if (host::all(ranks, robot.connections().empty())) {
-    return;
-  }
+  const model::Robot& robot = here.robot;
   solver::Equilibrium& settled = assessment.equilibrium;
   SeveralSolutions& several = assessment.several.emplace();
   several.found_count = settled.others.size() + 1;
   several.regularised = answers;
   for (const solver::Solution& other : settled.others) {
-    widen(several.regularised, robot, ranks, other);
+    widen(several.regularised, robot, other);
   }
   const solver::Equilibrium exact =
       solver.solve({.law = mechanics::ContactLaw::kUnilateral, .gamma = gamma});
   settled.steps += exact.steps;
   settled.iteration_count += exact.iteration_count;
-  const bool is_held_by_contact = assessment.stability_rule == StabilityRule::kContactForces;
+  const bool is_held_by_contact = here.rule == StabilityRule::kContactForces;
   const auto does_fall = [&](const solver::Solution& one) {
-    return is_held_by_contact && !do_states_hold(robot, one.contact, options.part);
+    return is_held_by_contact && !do_states_hold(here, one.contact);
   };
   assessment.model.falls_otherwise = std::ranges::any_of(settled.others, does_fall);
   if (exact.outcome == solver::Outcome::kSettled) {
     assessment.model.falls_otherwise |= does_fall(exact);
-    assessment.model.slip_otherwise = find_slip(robot, exact, options.part);
-    widen(several.unilateral.emplace(kEmpty), robot, ranks, exact, exact.open_but_held_count > 0);
+    assessment.model.slip_otherwise = find_slip(robot, exact);
+    widen(several.unilateral.emplace(kEmpty), robot, exact, exact.open_but_held_count > 0);
   }
   const bool is_multigrid =
       settled.method == solver::Method::kMultigrid || exact.method == solver::Method::kMultigrid;

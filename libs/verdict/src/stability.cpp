@@ -41,7 +41,7 @@ struct Heights {
   double centre_of_mass_mm = 0;  ///< Above the floor.
 };
 
-Heights heights(const model::Robot& robot, const model::RobotPart* part) {
+Heights heights(const model::Robot& robot) {
   const base::NodePlaces node_mm(robot.lattice(), robot.material().pitch_mm);
   double floor_mm = -std::numeric_limits<double>::infinity();
   if (!robot.facets().empty()) {
@@ -49,13 +49,12 @@ Heights heights(const model::Robot& robot, const model::RobotPart* part) {
     floor_mm =
         node_mm(robot.modules()[base::at(facet.module)].cell)[2] - robot.material().pitch_mm / 2;
   }
-  floor_mm = host::max(model::ranks_of(part), floor_mm);
-  return {.floor_mm = floor_mm,
-          .centre_of_mass_mm = model::mass_of(robot, part).centre_mm[2] - floor_mm};
+  floor_mm = host::max(robot.ranks(), floor_mm);
+  return {.floor_mm = floor_mm, .centre_of_mass_mm = model::mass_of(robot).centre_mm[2] - floor_mm};
 }
 
 /// The least and the most coefficient of friction of any facet; one that cannot slip has no limit.
-std::array<double, 2> friction_range(const model::Robot& robot, const model::RobotPart* part) {
+std::array<double, 2> friction_range(const model::Robot& robot) {
   constexpr double kNoSlip = std::numeric_limits<double>::infinity();
   double least = kNoSlip;
   double most = 0;
@@ -63,7 +62,7 @@ std::array<double, 2> friction_range(const model::Robot& robot, const model::Rob
     least = std::min(least, facet.touch.friction.value_or(kNoSlip));
     most = std::max(most, facet.touch.friction.value_or(kNoSlip));
   }
-  host::Ranks* const ranks = model::ranks_of(part);
+  host::Ranks& ranks = robot.ranks();
   return {-host::max(ranks, -least), host::max(ranks, most)};
 }
 
@@ -72,8 +71,8 @@ std::array<double, 2> friction_range(const model::Robot& robot, const model::Rob
 /// within the polygon, its share across can be given to the facets as they press. With several, it
 /// may also turn about where it slips last.
 std::optional<double> floor_tilt_deg(const model::Robot& robot, double margin_mm, double height_mm,
-                                     const model::RobotPart* part, bool has_figures) {
-  const auto [least, most] = friction_range(robot, part);
+                                     bool has_figures) {
+  const auto [least, most] = friction_range(robot);
   if (least != most && !has_figures) {
     return std::nullopt;
   }
@@ -82,16 +81,16 @@ std::optional<double> floor_tilt_deg(const model::Robot& robot, double margin_mm
   if (least == most) {
     return std::min(tips, slides);
   }
-  const auto turned = limit::assess_rigid(robot, part, true).tilt_margin_deg;
+  const auto turned = limit::assess_rigid(robot, true).tilt_margin_deg;
   return turned ? std::optional(std::min(tips, *turned)) : std::nullopt;
 }
 
 /// On a flat floor the polygon decides whether the weight is held, whatever the friction.
 limit::RigidStability floor_stability(const model::Robot& robot, const RigidBody& body,
-                                      const model::RobotPart* part, bool has_figures) {
+                                      bool has_figures) {
   using limit::RigidAnswer;
   limit::RigidStability rigid;
-  const auto [floor_mm, height_mm] = heights(robot, part);
+  const auto [floor_mm, height_mm] = heights(robot);
   const double margin = body.margin_mm.value_or(0);
   rigid.answer = margin > 0    ? RigidAnswer::kHolds
                  : margin == 0 ? RigidAnswer::kNothingToSpare
@@ -99,8 +98,7 @@ limit::RigidStability floor_stability(const model::Robot& robot, const RigidBody
   if (margin > 0) {
     rigid.friction_needed = 0;
   }
-  rigid.tilt_margin_deg =
-      margin > 0 ? floor_tilt_deg(robot, margin, height_mm, part, has_figures) : 0;
+  rigid.tilt_margin_deg = margin > 0 ? floor_tilt_deg(robot, margin, height_mm, has_figures) : 0;
   if (margin < 0 && body.edge) {
     const auto& [from, to] = *body.edge;
     const Vector3 axis = {to.x - from.x, to.y - from.y, 0};
@@ -148,8 +146,7 @@ void add_pressing_corners(const limit::ContactFacet& facet, const mechanics::Con
   }
 }
 
-bool holds_by_corners(const model::Robot& robot, std::span<const mechanics::ContactState> contact,
-                      const model::RobotPart* part) {
+bool holds_by_corners(const model::Robot& robot, std::span<const mechanics::ContactState> contact) {
   const std::vector<limit::ContactFacet> facets = limit::contact_facets(robot);
   std::vector<Vector3> corners;
   bool is_any_flat = false;
@@ -158,33 +155,27 @@ bool holds_by_corners(const model::Robot& robot, std::span<const mechanics::Cont
     is_any_flat = state == mechanics::kStuck && robot.foot_half_width_mm() > 0;
     add_pressing_corners(facets[i], state, corners);
   }
-  if (host::any(model::ranks_of(part), is_any_flat)) {
+  if (host::any(robot.ranks(), is_any_flat)) {
     return true;
   }
-  if (part != nullptr) {
-    corners = host::gather<Vector3>(*part->ranks, corners);
-  }
-  return !are_collinear(corners, kLineTie * robot.material().pitch_mm);
+  return !are_collinear(host::gather<Vector3>(robot.ranks(), corners),
+                        kLineTie * robot.material().pitch_mm);
 }
 
 /// The same on the floor of cubes, in integers.
 bool holds_by_cube_corners(const model::Robot& robot,
-                           std::span<const mechanics::ContactState> contact,
-                           const model::RobotPart* part) {
+                           std::span<const mechanics::ContactState> contact) {
   mechanics::SupportCorners corners;
   for (std::size_t i = 0; i < robot.facets().size() && !corners.stable; ++i) {
     const model::Module& module = robot.modules()[base::at(robot.facets()[i].module)];
     corners = mechanics::merge(corners, mechanics::support_corners(module.cell, contact[i]));
   }
-  if (part != nullptr) {
-    const auto all =
-        host::gather(*part->ranks, std::span<const mechanics::SupportCorners>(&corners, 1));
-    corners = {};
-    for (const mechanics::SupportCorners& one : all) {
-      corners = mechanics::merge(corners, one);
-    }
+  mechanics::SupportCorners all;
+  for (const mechanics::SupportCorners& one :
+       host::gather(robot.ranks(), std::span<const mechanics::SupportCorners>(&corners, 1))) {
+    all = mechanics::merge(all, one);
   }
-  return corners.stable;
+  return all.stable;
 }
 
 /// How far what the facets carry may be off, N: rounding, as a share of the largest of all, and
@@ -192,13 +183,13 @@ bool holds_by_cube_corners(const model::Robot& robot,
 class FacetErrors {
  public:
   FacetErrors(const model::Robot& robot, const Equilibrium& equilibrium,
-              const model::LatticeBeam<double>& beam, const model::RobotPart* part) {
+              const model::LatticeBeam<double>& beam) {
     double largest = 0;
     for (std::size_t i = 0; i < robot.facets().size(); ++i) {
       const auto local = beam.to_local(robot.facets()[i].direction, equilibrium.facet_force[i]);
       largest = std::max(largest, std::hypot(local[0], local[1], local[2]));
     }
-    largest = host::max(model::ranks_of(part), largest);
+    largest = host::max(robot.ranks(), largest);
     const double energy = equilibrium.energy_error;
     const double spread = std::isfinite(energy) ? kEnergyFactor * energy : 0;
     const auto springs = mechanics::beam_stiffness(model::beam_section(robot.material()));
@@ -227,45 +218,33 @@ struct RankedSlip {
 
 }  // namespace
 
-StabilityRule stability_rule(const model::Robot& robot, const model::RobotPart* part) {
-  if (host::any(model::ranks_of(part), robot.fixed_count() > 0 || robot.has_bonded_facets())) {
-    return StabilityRule::kHeld;
-  }
-  return is_on_flat_floor(robot, part) ? StabilityRule::kPolygon : StabilityRule::kContactForces;
-}
-
-limit::RigidStability rigid_stability(const model::Robot& robot, StabilityRule rule,
-                                      const RigidBody& body, const model::RobotPart* part,
+limit::RigidStability rigid_stability(const Situation& here, const RigidBody& body,
                                       bool has_figures) {
-  if (rule == StabilityRule::kHeld) {
-    return {.answer = limit::RigidAnswer::kHolds};
+  switch (here.rule) {
+    case StabilityRule::kHeld:
+      break;
+    case StabilityRule::kPolygon:
+      return floor_stability(here.robot, body, has_figures);
+    case StabilityRule::kContactForces:
+      return limit::assess_rigid(here.robot, has_figures);
   }
-  if (rule == StabilityRule::kPolygon) {
-    return floor_stability(robot, body, part, has_figures);
-  }
-  return limit::assess_rigid(robot, part, has_figures);
+  return {.answer = limit::RigidAnswer::kHolds};
 }
 
-ModelStability model_stability(const model::Robot& robot, const Equilibrium& equilibrium,
-                               const model::RobotPart* part) {
-  if (equilibrium.outcome != solver::Outcome::kSettled) {
-    return {};
-  }
-  if (stability_rule(robot, part) == StabilityRule::kHeld) {
-    return {.is_stable = true, .is_settled = true};
-  }
-  return {.is_stable = do_states_hold(robot, equilibrium.contact, part), .is_settled = true};
+ModelStability model_stability(const Situation& here, const Equilibrium& equilibrium) {
+  const bool is_settled = equilibrium.outcome == solver::Outcome::kSettled;
+  return {.is_stable = is_settled && (here.rule == StabilityRule::kHeld ||
+                                      do_states_hold(here, equilibrium.contact)),
+          .is_settled = is_settled};
 }
 
-bool do_states_hold(const model::Robot& robot, std::span<const mechanics::ContactState> contact,
-                    const model::RobotPart* part) {
-  const bool is_cubes_floor = robot.lattice() == base::kCubic && is_on_flat_floor(robot, part);
-  return is_cubes_floor ? holds_by_cube_corners(robot, contact, part)
-                        : holds_by_corners(robot, contact, part);
+bool do_states_hold(const Situation& here, std::span<const mechanics::ContactState> contact) {
+  return here.robot.lattice() == base::kCubic && here.is_on_flat_floor
+             ? holds_by_cube_corners(here.robot, contact)
+             : holds_by_corners(here.robot, contact);
 }
 
-std::optional<Lean> find_lean(const model::Robot& robot, const Assessment& assessment,
-                              const model::RobotPart* part) {
+std::optional<Lean> find_lean(const model::Robot& robot, const Assessment& assessment) {
   const RigidBody& body = assessment.simplified;
   if (assessment.stability_rule != StabilityRule::kPolygon || !body.margin_mm ||
       *body.margin_mm <= 0 || assessment.contact_model == ContactModel::kBonded) {
@@ -273,7 +252,7 @@ std::optional<Lean> find_lean(const model::Robot& robot, const Assessment& asses
   }
   const auto& displacement = assessment.equilibrium.displacement;
   MovedMass moved;
-  for (std::size_t i = 0; i < model::own_module_count(robot, part); ++i) {
+  for (std::size_t i = 0; i < robot.own_count(); ++i) {
     moved.add(robot.mass(i), displacement[i][0], displacement[i][1]);
   }
   for (const model::CarriedMass& carried : robot.carried()) {
@@ -284,7 +263,7 @@ std::optional<Lean> find_lean(const model::Robot& robot, const Assessment& asses
               u[1] + u[5] * arm[0] - u[3] * arm[2]);
   }
   for (double* sum : {&moved.x_kg_mm, &moved.y_kg_mm, &moved.mass_kg}) {
-    *sum = host::sum(model::ranks_of(part), *sum);
+    *sum = host::sum(robot.ranks(), *sum);
   }
   const double x = moved.x_kg_mm / moved.mass_kg;
   const double y = moved.y_kg_mm / moved.mass_kg;
@@ -300,10 +279,9 @@ std::optional<Lean> find_lean(const model::Robot& robot, const Assessment& asses
   return lean;
 }
 
-std::optional<Slip> find_slip(const model::Robot& robot, const Equilibrium& equilibrium,
-                              const model::RobotPart* part) {
+std::optional<Slip> find_slip(const model::Robot& robot, const Equilibrium& equilibrium) {
   const model::LatticeBeam<double> beam(model::beam_section(robot.material()), robot.lattice());
-  const FacetErrors errors(robot, equilibrium, beam, part);
+  const FacetErrors errors(robot, equilibrium, beam);
   Slip worst;
   double excess_max = 1;
   for (std::size_t i = 0; i < robot.facets().size(); ++i) {
@@ -322,14 +300,12 @@ std::optional<Slip> find_slip(const model::Robot& robot, const Equilibrium& equi
           .module = base::at(facet.module), .friction = mu, .ratio = sideways / std::abs(local[2])};
     }
   }
-  if (part != nullptr) {
-    worst.rank = part->ranks->rank();
-    for (const auto& [excess, slip] :
-         host::gather<RankedSlip>(*part->ranks, std::vector<RankedSlip>{{excess_max, worst}})) {
-      if (excess > excess_max || (excess == excess_max && slip.rank < worst.rank)) {
-        excess_max = excess;
-        worst = slip;
-      }
+  worst.rank = robot.ranks().rank();
+  for (const auto& [excess, slip] :
+       host::gather<RankedSlip>(robot.ranks(), std::vector<RankedSlip>{{excess_max, worst}})) {
+    if (excess > excess_max || (excess == excess_max && slip.rank < worst.rank)) {
+      excess_max = excess;
+      worst = slip;
     }
   }
   return excess_max > 1 ? std::optional(worst) : std::nullopt;

@@ -5,38 +5,30 @@
 #include <optional>
 #include <span>
 
-#include "holdfast/verdict/assessment.hpp"
+#include "situation.hpp"
 
 /// Does a robot keep standing where it is? By the rigid body, and by the model (Secs. III-B,
 /// III-C). Where a robot is a part, the answers are those of the whole.
 namespace holdfast::verdict {
 
-/// What decides: nothing needs to, the support polygon, or the rigid body's contact forces.
-StabilityRule stability_rule(const model::Robot& robot, const model::RobotPart* part);
-
 /// The rigid body with supports anywhere; on a flat floor, where `body` knows it all, in closed
 /// form.
-limit::RigidStability rigid_stability(const model::Robot& robot, StabilityRule rule,
-                                      const RigidBody& body, const model::RobotPart* part,
+limit::RigidStability rigid_stability(const Situation& here, const RigidBody& body,
                                       bool has_figures);
 
 /// Sec. III-C: stable if a facet presses all over, or three corners that press are not on one line.
-ModelStability model_stability(const model::Robot& robot, const solver::Equilibrium& equilibrium,
-                               const model::RobotPart* part);
+ModelStability model_stability(const Situation& here, const solver::Equilibrium& equilibrium);
 
 /// Whether the states of all facets, in their order, hold a robot that nothing else holds: the
 /// same.
-bool do_states_hold(const model::Robot& robot, std::span<const mechanics::ContactState> contact,
-                    const model::RobotPart* part);
+bool do_states_hold(const Situation& here, std::span<const mechanics::ContactState> contact);
 
 /// Where bending takes the centre of mass of a robot that the support polygon holds; none for any
 /// other.
-std::optional<Lean> find_lean(const model::Robot& robot, const Assessment& assessment,
-                              const model::RobotPart* part);
+std::optional<Lean> find_lean(const model::Robot& robot, const Assessment& assessment);
 
 /// The facet whose sideways force exceeds its friction most, as a share of what it presses with
 /// times the coefficient; none if none does by more than its forces may be off.
-std::optional<Slip> find_slip(const model::Robot& robot, const solver::Equilibrium& equilibrium,
-                              const model::RobotPart* part);
+std::optional<Slip> find_slip(const model::Robot& robot, const solver::Equilibrium& equilibrium);
 
 }  // namespace holdfast::verdict

@@ -32,7 +32,7 @@ RobotSpec tilted(RobotSpec spec, double degrees, double towards) {
 }
 
 bool holds(const RobotSpec& spec) {
-  return assess_rigidly(model::Robot::create(spec).value(), nullptr, false).rigid.holds();
+  return assess_rigidly(model::Robot::create(spec).value(), false).rigid.holds();
 }
 
 double tilt_of(const RobotSpec& spec) {

@@ -18,7 +18,7 @@ constexpr std::uint8_t kNoColour = 255;
 
 class Colours {
  public:
-  Colours(const SpringGraph& fine, const Clusters& clusters, Team& team, host::Halo* halo)
+  Colours(const SpringGraph& fine, const Clusters& clusters, Team& team, host::Halo& halo)
       : fine_(fine),
         clusters_(clusters),
         team_(team),
@@ -27,10 +27,10 @@ class Colours {
 
   std::vector<std::uint8_t> find() {
     std::vector<std::uint8_t> colours(count_, kNoColour);
-    if (fine_.ranks == nullptr) {
-      colour_whole(colours);
-    } else {
+    if (fine_.is_part()) {
       colour_on_ranks(colours);
+    } else {
+      colour_whole(colours);
     }
     return colours;
   }
@@ -53,7 +53,7 @@ class Colours {
 
   /// The rank that each node is of.
   std::vector<std::int32_t> rank_of_nodes() const {
-    std::vector<std::int32_t> rank(fine_.order.size(), fine_.ranks->rank());
+    std::vector<std::int32_t> rank(fine_.order.size(), fine_.ranks.get().rank());
     for (const host::Copy& copy : fine_.copies) {
       rank[at(copy.place)] = copy.original.rank;
     }
@@ -65,7 +65,7 @@ class Colours {
     for (std::size_t node = 0; node < fine_.own_count(); ++node) {
       seen[node] = colours[at(clusters_.of_node[node])];
     }
-    halo_->update(seen.data(), sizeof(std::uint8_t));
+    halo_.update(seen.data(), sizeof(std::uint8_t));
   }
 
   /// Where neighbours of two ranks have one colour, the one of the higher rank takes another. Two
@@ -89,7 +89,8 @@ class Colours {
             const std::uint8_t used =
                 fine_.is_copy(other) ? seen[at(other)] : colours[at(clusters_.of_node[at(other)])];
             taken |= is_other_cluster ? std::uint64_t{1} << used : 0;
-            is_shared = is_shared || (used == colours[c] && rank[at(other)] < fine_.ranks->rank());
+            is_shared =
+                is_shared || (used == colours[c] && rank[at(other)] < fine_.ranks.get().rank());
           });
         });
         if (is_shared) {
@@ -130,7 +131,7 @@ class Colours {
   /// curve, of the first rank that has any, has the first colour.
   void guess_colours(std::vector<std::uint8_t>& colours) const {
     const std::uint8_t mine = count_ > 0 ? parity(0) : kNoColour;
-    const auto firsts = host::gather(*fine_.ranks, std::span<const std::uint8_t>(&mine, 1));
+    const auto firsts = host::gather(fine_.ranks, std::span<const std::uint8_t>(&mine, 1));
     const auto first = std::ranges::find_if(firsts, [](auto one) { return one != kNoColour; });
     paint_chessboard(first == firsts.end() ? std::uint8_t{0} : *first, colours);
   }
@@ -159,7 +160,7 @@ class Colours {
       std::vector<std::uint8_t> lower;
       for (const host::Copy& copy : fine_.copies) {
         std::uint8_t& colour = seen[at(copy.place)];
-        colour = copy.original.rank < fine_.ranks->rank() ? colour : kNoColour;
+        colour = copy.original.rank < fine_.ranks.get().rank() ? colour : kNoColour;
         lower.push_back(colour);
       }
       const bool is_changed = round == 0 || lower != before;
@@ -208,14 +209,14 @@ class Colours {
   const SpringGraph& fine_;
   const Clusters& clusters_;
   Team& team_;
-  host::Halo* halo_;
+  host::Halo& halo_;
   std::size_t count_;
 };
 
 }  // namespace
 
 std::vector<std::uint8_t> colour_clusters(const SpringGraph& graph, const Clusters& clusters,
-                                          Team& team, host::Halo* halo) {
+                                          Team& team, host::Halo& halo) {
   return Colours(graph, clusters, team, halo).find();
 }
 

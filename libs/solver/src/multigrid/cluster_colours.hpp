@@ -23,6 +23,6 @@ struct Clusters {
 /// Colours, below 64, so that neighbours have two: first fit along the curve, as which a robot in
 /// parts has the colours of one machine. `halo` is that of the nodes' copies; none of a whole.
 std::vector<std::uint8_t> colour_clusters(const SpringGraph& graph, const Clusters& clusters,
-                                          host::Team& team, host::Halo* halo);
+                                          host::Team& team, host::Halo& halo);
 
 }  // namespace holdfast::solver

@@ -128,7 +128,7 @@ class Coarsening {
       shift += 3;
     }
     if constexpr (std::is_same_v<Real, float>) {
-      is_weak_ = weak_springs(fine_, team_, level_.halo.get());
+      is_weak_ = weak_springs(fine_, team_, *level_.halo);
     }
     find_clusters(shift);
     coarse_.shift = fine_.shift + shift;
@@ -172,7 +172,7 @@ class Coarsening {
   /// Few nodes in parts, which clusters within ranks would make a poor level of: the next level is
   /// the same, and whole.
   bool is_gathered_as_it_is() const {
-    return fine_.ranks != nullptr && host::total(fine_.ranks, fine_.own_count()) <= kGatheredCount;
+    return fine_.is_part() && host::total(fine_.ranks, fine_.own_count()) <= kGatheredCount;
   }
 
   void join_none() {
@@ -326,7 +326,7 @@ class Coarsening {
                          .member = member_,
                          .member_start = member_start_,
                          .shift = coarse_.shift - fine_.shift},
-                        team_, level_.halo.get());
+                        team_, *level_.halo);
     std::array<double, 64> count{};  // Whole numbers, which ranks add up.
     for (const std::uint8_t colour : colours) {
       ++count[colour];
@@ -395,7 +395,7 @@ class Coarsening {
   /// Clusters that other ranks' nodes have joined, as far as this one has copies of these.
   void follow_copies() {
     coarse_.ranks = fine_.ranks;
-    if (fine_.ranks == nullptr) {
+    if (!fine_.is_part()) {
       return;
     }
 

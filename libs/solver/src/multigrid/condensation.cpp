@@ -198,10 +198,8 @@ void recover_run(const Robot& robot, const Ways& ways, const Run& run,
   }
 }
 
-void update(host::Halo* copies, std::vector<Vec6<double>>& by_module) {
-  if (copies != nullptr) {
-    copies->update(by_module.data(), sizeof(Vec6<double>));
-  }
+void update(host::Halo& copies, std::vector<Vec6<double>>& by_module) {
+  copies.update(by_module.data(), sizeof(Vec6<double>));
 }
 
 /// The modules that hang on a network which go in one round, in the order of elimination.
@@ -252,7 +250,7 @@ CondensedLoads::CondensedLoads(const std::vector<Load>& loads, const model::Load
 }
 
 CondensedLoads condense(const Robot& robot, const ReducedNetwork& network, Team& team,
-                        const model::Loads& loads, host::Halo* copies) {
+                        const model::Loads& loads, host::Halo& copies) {
   std::vector<Vec6<double>> load(robot.modules().size());
   team.share(0, load.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -280,7 +278,7 @@ CondensedLoads condense(const Robot& robot, const ReducedNetwork& network, Team&
 
 void recover(const Robot& robot, const ReducedNetwork& network, Team& team,
              const model::Loads& loads, const CondensedLoads& condensed,
-             std::vector<Vec6<double>>& displacement, host::Halo* copies) {
+             std::vector<Vec6<double>>& displacement, host::Halo& copies) {
   ShapeTable shapes(robot.material().pitch_mm);
   const Ways ways(robot.lattice());
   for (const Run& run : network.runs) {

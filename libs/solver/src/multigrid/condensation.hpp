@@ -60,12 +60,12 @@ class CondensedLoads {
 /// are held. Of a part of a robot `copies` keeps those of modules up to date: a tree that crosses
 /// ranks hands its load on round by round, from the leaves on.
 CondensedLoads condense(const model::Robot& robot, const ReducedNetwork& network, host::Team& team,
-                        const model::Loads& loads, host::Halo* copies = nullptr);
+                        const model::Loads& loads, host::Halo& copies);
 
 /// Fills in the displacements of eliminated modules, those of nodes being given, by module; with
 /// the loads that condense() made of `loads`. Across ranks from what trees hang on to their leaves.
 void recover(const model::Robot& robot, const ReducedNetwork& network, host::Team& team,
              const model::Loads& loads, const CondensedLoads& condensed,
-             std::vector<base::Vec6<double>>& displacement, host::Halo* copies = nullptr);
+             std::vector<base::Vec6<double>>& displacement, host::Halo& copies);
 
 }  // namespace holdfast::solver

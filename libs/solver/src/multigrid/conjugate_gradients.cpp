@@ -315,8 +315,7 @@ typename ConjugateGradients<Real>::State ConjugateGradients<Real>::state(const G
 
 /// Iterates until is_over(iteration, error). Returns false if K is not positive definite.
 template <class Real>
-template <class IsOver>
-bool ConjugateGradients<Real>::iterate(const IsOver& is_over) {
+bool ConjugateGradients<Real>::iterate(const host::KrylovTask::IsOver& is_over) {
   for (int iteration = 0; !is_over(iteration, error_); ++iteration) {
     if (!(is_product_kept() ? go_on_with_product() : go_on_without_product())) {
       return false;
@@ -365,7 +364,7 @@ bool ConjugateGradients<Real>::is_product_kept() const {
   const bool is_large = node_count_ > kKeptProductMax;
   const bool is_expensive =
       std::is_same_v<Real, double> || is_solid_ || last_step_ || !gain_.empty();
-  return hierarchy_.ranks(0) != nullptr || !is_large || !is_expensive;
+  return hierarchy_.ranks(0).is_shared() || !is_large || !is_expensive;
 }
 
 /// z . K z and p . K z, for any z.
@@ -404,24 +403,20 @@ Iteration::End ConjugateGradients<Real>::run(const Goal& goal) {
     reached = state(goal, iteration);
     return reached != State::kOnTheWay;
   };
-  if (host::Ranks* const ranks = hierarchy_.ranks(0)) {
-    host::KrylovTask task;
-    task.x = std::span(x_).first(6 * node_count_);
-    task.residual = [&](double* numbers) { copy_residual(numbers); };
-    task.is_over = is_over;
-    task.multiply = [&](const double* p, double* q) {  // Who watches may ask between iterations.
-      const std::vector<Six<Real>> last = p_;
-      multiply(p, q);
-      p_ = last;
-    };
-    task.iterate = [&](const auto& is_ended) { is_definite = iterate(is_ended); };
-    if (!ranks->is_own_method(task)) {
-      return run_by_another(goal, task);
-    }
-    ranks->watch(task);
-  } else {
-    is_definite = iterate(is_over);
+  host::KrylovTask task;
+  task.x = std::span(x_).first(6 * node_count_);
+  task.residual = [&](double* numbers) { copy_residual(numbers); };
+  task.is_over = is_over;
+  task.multiply = [&](const double* p, double* q) {  // Who watches may ask between iterations.
+    const std::vector<Six<Real>> last = p_;
+    multiply(p, q);
+    p_ = last;
+  };
+  task.iterate = [&](const auto& is_ended) { is_definite = iterate(is_ended); };
+  if (!hierarchy_.ranks(0).is_own_method(task)) {
+    return run_by_another(goal, task);
   }
+  hierarchy_.ranks(0).watch(task);
   if (is_definite && reached != State::kReached) {
     return End::kTooSlow;
   }
@@ -507,7 +502,7 @@ Iteration::End ConjugateGradients<Real>::run_by_another(const Goal& goal, host::
     copy_residual(b.data());
     std::vector<double> d(b.size());
     before = 0;
-    const bool is_own = hierarchy_.ranks(0)->solve(task, b, d);
+    const bool is_own = hierarchy_.ranks(0).solve(task, b, d);
     std::vector<double> image(d.size());
     const std::vector<Six<Real>> last = p_;
     multiply(d.data(), image.data());

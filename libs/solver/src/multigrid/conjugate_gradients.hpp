@@ -65,8 +65,7 @@ class ConjugateGradients final : public Iteration {
   /// M^-1 r, after a cycle.
   std::span<const Six<Real>> preconditioned() { return hierarchy_.levels().front().z; }
 
-  template <class IsOver>
-  bool iterate(const IsOver& is_over);
+  bool iterate(const host::KrylovTask::IsOver& is_over);
   bool go_on_with_product();
   bool go_on_without_product();
   bool is_product_kept() const;

@@ -93,7 +93,7 @@ void Cycle<Real>::gather_forces(std::size_t depth) {
   Level<Real>& coarse = hierarchy_.levels()[depth];
   if (!coarse.gathering.is_empty()) {
     const std::vector<Six<Real>> all =
-        host::gather<Six<Real>>(*hierarchy_.ranks(depth - 1), coarse.part);
+        host::gather<Six<Real>>(hierarchy_.ranks(depth - 1), coarse.part);
     for (std::size_t i = 0; i < all.size(); ++i) {
       coarse.r[static_cast<std::size_t>(coarse.gathering.node[i])] = all[i];
     }

@@ -28,13 +28,12 @@ constexpr std::uint8_t kNoWay = 255;
 
 class Eliminator {
  public:
-  Eliminator(const Robot& robot, Team& team, const model::RobotPart* part)
+  Eliminator(const Robot& robot, Team& team)
       : robot_(robot),
         team_(team),
-        part_(part),
         axis_count_(at(robot.lattice().direction_count) / 2),
-        own_count_(model::own_module_count(robot, part)),
-        halo_(part == nullptr ? nullptr : part->ranks->make_halo(own_count_, part->copies)),
+        own_count_(robot.own_count()),
+        halo_(robot.ranks().make_halo(own_count_, robot.part().copies)),
         degree_(robot.modules().size()) {
     result_.is_gone.assign(robot.modules().size(), 0);
   }
@@ -88,11 +87,7 @@ class Eliminator {
     for (std::size_t leaf = 0; leaf < own_count_; ++leaf) {
       take_branch(leaf);
     }
-    if (part_ != nullptr) {
-      take_hanging_on_ranks();
-    } else if (!result_.hanging.empty()) {
-      result_.round_start.push_back(result_.hanging.size());
-    }
+    take_hanging_on_ranks();
   }
 
   /// From a leaf on, as long as what it hung on is one then, and this rank's own.
@@ -120,16 +115,15 @@ class Eliminator {
   /// direction; what other ranks' modules hang on may then be a leaf itself. A round ends when all
   /// ranks have taken what they can.
   void take_hanging_on_ranks() {
-    host::Ranks* const ranks = part_->ranks;
     std::vector<std::uint8_t> way(degree_.size(), kNoWay);
-    bool is_any_new = host::any(ranks, !result_.hanging.empty());
+    bool is_any_new = host::any(robot_.ranks(), !result_.hanging.empty());
     while (is_any_new) {
       for (std::size_t i = result_.round_start.back(); i < result_.hanging.size(); ++i) {
         way[at(result_.hanging[i].module)] = result_.hanging[i].direction;
       }
       result_.round_start.push_back(result_.hanging.size());
       halo_->update(way.data(), sizeof(std::uint8_t));
-      is_any_new = host::any(ranks, take_copies(way));
+      is_any_new = host::any(robot_.ranks(), take_copies(way));
     }
   }
 
@@ -174,7 +168,7 @@ class Eliminator {
     for (std::size_t i = 0; i < own_count_; ++i) {
       axis[i] = static_cast<std::int8_t>(axis_of_passage(i));
     }
-    if (halo_) {
+    if (robot_.ranks().is_shared()) {
       halo_->update(axis.data(), sizeof(std::int8_t));
       cut_long_runs(axis);
     }
@@ -204,7 +198,7 @@ class Eliminator {
         }
       }
       halo_->update(length.data(), sizeof(std::uint8_t));
-      is_any_new = host::any(part_->ranks, is_any_new);
+      is_any_new = host::any(robot_.ranks(), is_any_new);
     }
     return length;
   }
@@ -226,7 +220,7 @@ class Eliminator {
   /// Runs too long for one beam end in the middle where it depends on the place alone: ranks see
   /// their own ends of these only.
   void cut_long_runs(std::vector<std::int8_t>& axis) const {
-    if (host::all(part_->ranks,
+    if (host::all(robot_.ranks(),
                   std::ranges::all_of(axis, [](std::int8_t one) { return one < 0; }))) {
       return;
     }
@@ -268,7 +262,7 @@ class Eliminator {
       for (std::size_t direction = 0; is_end && direction < 2 * axis_count_; direction += 2) {
         if (is_connected(i, direction) &&
             axis[next(i, direction)] == static_cast<int>(direction / 2) &&
-            (part_ == nullptr || is_whole(i, direction, axis))) {
+            is_whole(i, direction, axis)) {
           take_run(i, direction, axis);
         }
       }
@@ -309,7 +303,7 @@ class Eliminator {
   }
 
   void note_axes() {
-    if (part_ == nullptr && result_.hanging.empty() && result_.runs.empty()) {
+    if (!robot_.ranks().is_shared() && result_.hanging.empty() && result_.runs.empty()) {
       return;
     }
     result_.run_axis.assign(degree_.size(), Elimination::kNoAxis);
@@ -324,23 +318,20 @@ class Eliminator {
 
   const Robot& robot_;
   Team& team_;
-  const model::RobotPart* part_;
   std::size_t axis_count_;            ///< Pairs of opposite directions.
   std::size_t own_count_;             ///< Modules that are no copies.
-  std::unique_ptr<host::Halo> halo_;  ///< Of modules; null without ranks.
+  std::unique_ptr<host::Halo> halo_;  ///< Of modules.
   std::vector<std::uint8_t> degree_;  ///< Connections that are left.
   Elimination result_;
 };
 
 }  // namespace
 
-std::vector<std::int8_t> passage_axes(const Robot& robot, const model::RobotPart& part) {
+std::vector<std::int8_t> passage_axes(const Robot& robot) {
   Team team(1);
-  return Eliminator(robot, team, &part).passages();
+  return Eliminator(robot, team).passages();
 }
 
-Elimination eliminate(const Robot& robot, Team& team, const model::RobotPart* part) {
-  return Eliminator(robot, team, part).run();
-}
+Elimination eliminate(const Robot& robot, Team& team) { return Eliminator(robot, team).run(); }
 
 }  // namespace holdfast::solver

@@ -7,7 +7,6 @@
 
 #include "holdfast/host/team.hpp"
 #include "holdfast/model/robot.hpp"
-#include "holdfast/model/robot_part.hpp"
 
 namespace holdfast::solver {
 
@@ -45,7 +44,6 @@ struct Elimination {
 
 /// Of a part of a robot runs are eliminated across ranks, by all that have some of their modules,
 /// as far as all of these are here (passages.hpp); hanging trees across ranks by turns.
-Elimination eliminate(const model::Robot& robot, host::Team& team,
-                      const model::RobotPart* part = nullptr);
+Elimination eliminate(const model::Robot& robot, host::Team& team);
 
 }  // namespace holdfast::solver

@@ -42,7 +42,7 @@ std::vector<std::int32_t> numbers_among_all(const SpringGraph& part,
                                             const std::vector<std::size_t>& first) {
   std::vector<std::int32_t> number(part.order.size());
   std::iota(number.begin(), number.begin() + static_cast<std::ptrdiff_t>(part.own_count()),
-            static_cast<std::int32_t>(first[at(part.ranks->rank())]));
+            static_cast<std::int32_t>(first[at(part.ranks.get().rank())]));
   for (const host::Copy& copy : part.copies) {
     number[at(copy.place)] =
         static_cast<std::int32_t>(first[at(copy.original.rank)]) + copy.original.index;
@@ -67,7 +67,7 @@ std::vector<NodeRecord> records_of(const SpringGraph& part) {
 }
 
 AllNodes all_nodes(const SpringGraph& part) {
-  host::Ranks& ranks = *part.ranks;
+  host::Ranks& ranks = part.ranks;
   AllNodes all;
   all.first = host::starts(ranks, part.own_count());
   all.records = host::gather<NodeRecord>(ranks, records_of(part));
@@ -171,7 +171,7 @@ SpringGraph gathered_graph(const SpringGraph& part, Gathering& gathering,
     graph.start.push_back(static_cast<std::int32_t>(graph.other.size()));
   }
   gathering = {.node = std::move(node_of),
-               .first = all.first[at(part.ranks->rank())],
+               .first = all.first[at(part.ranks.get().rank())],
                .own_count = part.own_count()};
   return graph;
 }

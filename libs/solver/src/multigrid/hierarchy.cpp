@@ -178,7 +178,7 @@ void Hierarchy<Real>::place_nodes(Team& team, ReducedNetwork& network, SpringGra
       }
     }
   });
-  if (network_.ranks != nullptr) {
+  if (network_.ranks.get().is_shared()) {
     graph.order = network_.order;
     return;
   }
@@ -394,10 +394,11 @@ void Hierarchy<Real>::add_level(const SpringGraph& graph, const Springs& springs
 /// Takes note of whose copies a level of a part of a robot has.
 template <class Real>
 void Hierarchy<Real>::share(const SpringGraph& graph, Level<Real>& level) const {
-  if (graph.ranks == nullptr) {
+  host::Ranks& ranks = graph.ranks;
+  if (!ranks.is_shared()) {
     return;
   }
-  level.halo = graph.ranks->make_halo(graph.own_count(), graph.copies);
+  level.halo = ranks.make_halo(graph.own_count(), graph.copies);
   const std::size_t colour_count = level.colour_start.size() - 1;
   std::vector<std::uint8_t> colour_of(level.place_count);
   for (std::size_t colour = 0; colour < colour_count; ++colour) {
@@ -411,7 +412,7 @@ void Hierarchy<Real>::share(const SpringGraph& graph, Level<Real>& level) const 
     copies[colour_of[at(copy.place)]].push_back(copy);
   }
   for (const std::vector<host::Copy>& list : copies) {
-    level.halo_of_colour.push_back(graph.ranks->make_halo(graph.own_count(), list));
+    level.halo_of_colour.push_back(ranks.make_halo(graph.own_count(), list));
   }
 }
 
@@ -421,7 +422,7 @@ void Hierarchy<Real>::gather(SpringGraph& graph, std::vector<GroundSpring>& spri
                              std::vector<std::size_t>& colour_start) {
   Gathering gathering;
   graph = gathered_graph(graph, gathering, colour_start);
-  springs = gathered_springs(springs, gathering, *network_.ranks);
+  springs = gathered_springs(springs, gathering, network_.ranks);
   gathered_depth_ = levels_.size();
   add_level(graph, springs, std::move(colour_start));
   levels_.back().part.resize(gathering.own_count);
@@ -517,7 +518,7 @@ void Hierarchy<Real>::update_contact() {
         depth == 1 ? coarse_ground_springs(finest, seat) : coarse_ground_springs(springs, seat);
     const Gathering& gathering = levels_[depth].gathering;
     if (!gathering.is_empty()) {
-      springs = gathered_springs(springs, gathering, *network_.ranks);
+      springs = gathered_springs(springs, gathering, network_.ranks);
     }
     set_ground_springs(depth, springs);
   }
@@ -553,8 +554,7 @@ Hierarchy<Real>::Hierarchy(ReducedNetwork& network, const model::Material& mater
     : network_(network),
       material_(material),
       ground_(ground),
-      alone_count_(host::total(network.ranks, alone.size())),
-      gathered_depth_(network.ranks == nullptr ? 0 : std::numeric_limits<std::size_t>::max()) {
+      alone_count_(host::total(network.ranks, alone.size())) {
   SpringGraph graph;
   fill_graph(team, network, graph);
   graph.is_alone.assign(alone.empty() ? 0 : network_.node_count, false);
@@ -571,7 +571,7 @@ Hierarchy<Real>::Hierarchy(ReducedNetwork& network, const model::Material& mater
   }
   std::vector<GroundSpring> springs;
   share(graph, levels_.front());
-  while (!coarsest_ && (levels_.size() == 1 || graph.ranks != nullptr ||
+  while (!coarsest_ && (levels_.size() == 1 || graph.is_part() ||
                         graph.order.size() > kCoarsestCount + alone_count_)) {
     SpringGraph coarse;
     std::vector<std::size_t> colour_start;
@@ -582,14 +582,14 @@ Hierarchy<Real>::Hierarchy(ReducedNetwork& network, const model::Material& mater
     const Seats<Real>& seat = levels_.back().seat;
     springs = levels_.size() == 1 ? coarse_ground_springs(finest, seat)
                                   : coarse_ground_springs(springs, seat);
-    const bool is_part = graph.ranks != nullptr;
+    const bool is_part = graph.is_part();
     if (is_part && host::total(graph.ranks, graph.own_count()) <= kGatheredCount) {
       gather(graph, springs, colour_start);
     } else {
       add_level(graph, springs, std::move(colour_start));
       share(graph, levels_.back());
     }
-    if (graph.ranks == nullptr) {
+    if (!graph.is_part()) {
       try_to_factor(graph);
     }
   }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -74,23 +75,21 @@ class Hierarchy {
   /// Whether a level has the kernels of cubes on a floor; only the finest may.
   bool is_cubic(std::size_t depth) const { return depth == 0 && network_.is_cubic; }
 
-  /// Who shares the levels before gathered_depth(), each with a part; null: nobody.
-  host::Ranks* ranks(std::size_t depth) const {
-    return depth < gathered_depth_ ? network_.ranks : nullptr;
+  /// Who shares a level, each with a part.
+  host::Ranks& ranks(std::size_t depth) const {
+    return depth < gathered_depth_ ? network_.ranks.get() : host::single_rank();
   }
 
   /// Gives copies on a level what their originals have.
   template <class Item>
   void update_copies(std::size_t depth, std::span<Item> items) {
-    if (levels_[depth].halo != nullptr) {
-      levels_[depth].halo->update(items.data(), sizeof(Item));
-    }
+    levels_[depth].halo->update(items.data(), sizeof(Item));
   }
 
   /// The same where only nodes of one colour have changed.
   template <class Item>
   void update_copies(std::size_t depth, std::size_t colour, std::span<Item> items) {
-    if (levels_[depth].halo != nullptr) {
+    if (!levels_[depth].halo_of_colour.empty()) {
       levels_[depth].halo_of_colour[colour]->update(items.data(), sizeof(Item));
     }
   }
@@ -186,8 +185,9 @@ class Hierarchy {
   const ReducedNetwork& network_;
   const model::Material& material_;
   const GroundTable& ground_;
-  std::size_t alone_count_ = 0;     ///< Of all ranks.
-  std::size_t gathered_depth_ = 0;  ///< From here on levels are whole.
+  std::size_t alone_count_ = 0;  ///< Of all ranks.
+  /// From here on levels are whole at all ranks.
+  std::size_t gathered_depth_ = std::numeric_limits<std::size_t>::max();
   std::vector<Level<Real>> levels_;
   CycleVectors<Real> vectors_;
   std::vector<Held> held_;  ///< By level; not filled in where is_cubic().

@@ -56,7 +56,7 @@ void follow_lower_ranks(const ReducedNetwork& network, const model::Material& ma
                         Level<double>& level) {
   std::vector<bool> is_lower(network.node_count);
   for (const host::Copy& copy : network.copies) {
-    is_lower[at(copy.place)] = copy.original.rank < network.ranks->rank();
+    is_lower[at(copy.place)] = copy.original.rank < network.ranks.get().rank();
   }
   std::map<std::pair<std::size_t, std::size_t>, std::uint32_t> known;
   std::vector<BodySpring>& springs = level.couplings.springs;

@@ -69,10 +69,12 @@ struct Gathering {
 /// ReducedNetwork.
 template <class Real>
 struct Level {
-  std::size_t node_count = 0;        ///< Of a part of a robot this rank's own.
-  std::size_t place_count = 0;       ///< With the copies of other ranks', which come after them.
-  std::unique_ptr<host::Halo> halo;  ///< Keeps these up to date; null if there are none.
-  std::vector<std::unique_ptr<host::Halo>> halo_of_colour;  ///< The same for those of one colour.
+  std::size_t node_count = 0;   ///< Of a part of a robot this rank's own.
+  std::size_t place_count = 0;  ///< With the copies of other ranks', which come after them.
+  /// Keeps these up to date.
+  std::unique_ptr<host::Halo> halo = std::make_unique<host::NoCopies>();
+  /// The same for those of one colour; empty if there are none.
+  std::vector<std::unique_ptr<host::Halo>> halo_of_colour;
   Gathering gathering;  ///< If all ranks have all of this level.
   std::vector<std::size_t> colour_start;
   // Compressed rows.

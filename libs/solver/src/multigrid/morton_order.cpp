@@ -18,7 +18,7 @@ namespace {
 using host::Team;
 
 /// The least of all ranks' numbers.
-std::int32_t lowest(host::Ranks* ranks, std::int32_t mine) {
+std::int32_t lowest(host::Ranks& ranks, std::int32_t mine) {
   return static_cast<std::int32_t>(-host::max(ranks, -static_cast<double>(mine)));
 }
 
@@ -41,7 +41,7 @@ struct Extent {
 
   /// The box around all ranks' boxes.
   void add_all(host::Ranks& ranks) {
-    low = {lowest(&ranks, low.x), lowest(&ranks, low.y), lowest(&ranks, low.z)};
+    low = {lowest(ranks, low.x), lowest(ranks, low.y), lowest(ranks, low.z)};
     const auto highest = [&](std::int32_t mine) {
       return static_cast<std::int32_t>(ranks.max(mine));
     };
@@ -190,7 +190,7 @@ std::uint64_t morton_key(const base::Cell& brick, const base::Cell& low) {
 }
 
 MortonOrder morton_order(const model::Robot& robot, const std::vector<std::uint8_t>& is_gone,
-                         Team& team, const model::RobotPart* part) {
+                         Team& team) {
   /// What one thread sees of a chunk of modules.
   struct Survey {
     Extent all;
@@ -222,7 +222,7 @@ MortonOrder morton_order(const model::Robot& robot, const std::vector<std::uint8
     extent.add(survey.left);
     count += std::exchange(survey.count, count);
   }
-  host::Ranks* const ranks = model::ranks_of(part);
+  host::Ranks& ranks = robot.ranks();
   const base::Cell low = {lowest(ranks, all.low.x), lowest(ranks, all.low.y),
                           lowest(ranks, all.low.z)};
   MortonOrder order;
@@ -237,12 +237,10 @@ MortonOrder morton_order(const model::Robot& robot, const std::vector<std::uint8
     }
   });
   RadixSort(team, order.modules).run();
-  if (part != nullptr) {
-    std::stable_partition(order.modules.begin(), order.modules.end(), [&](const KeyedModule& item) {
-      return base::at(item.module) < part->own_count;
-    });
-    extent.add_all(*ranks);
-  }
+  std::stable_partition(order.modules.begin(), order.modules.end(), [&](const KeyedModule& item) {
+    return base::at(item.module) < robot.own_count();
+  });
+  extent.add_all(ranks);
   order.low = low;
   order.extent = extent.longest();
   return order;

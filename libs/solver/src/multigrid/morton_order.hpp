@@ -7,7 +7,6 @@
 
 #include "holdfast/host/team.hpp"
 #include "holdfast/model/robot.hpp"
-#include "holdfast/model/robot_part.hpp"
 
 namespace holdfast::solver {
 
@@ -38,6 +37,6 @@ struct MortonOrder {
 /// Sorts the modules that are not `is_gone`. Of a part of a robot its own modules come first, then
 /// the copies; keys count from the whole robot's corner, and the extent is the whole's.
 MortonOrder morton_order(const model::Robot& robot, const std::vector<std::uint8_t>& is_gone,
-                         host::Team& team, const model::RobotPart* part = nullptr);
+                         host::Team& team);
 
 }  // namespace holdfast::solver

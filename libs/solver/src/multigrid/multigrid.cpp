@@ -91,7 +91,7 @@ bool is_held_sideways(ContactLaw law, bool is_held) {
 
 std::unique_ptr<Multigrid> Multigrid::make(const model::Robot& robot,
                                            const EquilibriumOptions& options) {
-  if (host::any(options.ranks(), bytes_for(robot, options.precision) > options.memory_bytes_max)) {
+  if (host::any(robot.ranks(), bytes_for(robot, options.precision) > options.memory_bytes_max)) {
     return nullptr;
   }
   return std::make_unique<Multigrid>(robot, options);
@@ -102,7 +102,7 @@ Multigrid::Multigrid(const model::Robot& robot, const EquilibriumOptions& option
       options_(options),
       precision_(options.precision),
       team_(options.thread_count, robot.modules().size()),
-      network_(make_reduced_network(robot, team_, options.part)),
+      network_(make_reduced_network(robot, team_)),
       ground_node_of_facet_(facets().size()) {
   for (std::size_t i = 0; i < network_.ground_beams.size(); ++i) {
     const GroundBeam& beam = network_.ground_beams[i];
@@ -114,10 +114,8 @@ Multigrid::Multigrid(const model::Robot& robot, const EquilibriumOptions& option
     }
   }
   alone_ = nodes_alone();
-  if (const model::RobotPart* part = options_.part) {
-    module_copies_ = part->ranks->make_halo(part->own_count, part->copies);
-    node_copies_ = part->ranks->make_halo(network_.own_count, network_.copies);
-  }
+  module_copies_ = ranks().make_halo(robot.own_count(), robot.part().copies);
+  node_copies_ = ranks().make_halo(network_.own_count, network_.copies);
   take_loads();
 }
 
@@ -144,7 +142,7 @@ bool Multigrid::set_precision(Precision precision) {
 /// Whether it is plain from the robot's shape that single precision will not do.
 bool Multigrid::is_too_slender() const {
   const double length = network_.extent;
-  const auto count = static_cast<double>(model::whole_module_count(robot(), options_.part));
+  const auto count = static_cast<double>(model::whole_module_count(robot()));
   const double slenderness_squared = length * length * length / count;
   return network_.all_count > kTrivialCount &&
          std::numeric_limits<float>::epsilon() / 2 * slenderness_squared > kRoundingShare;
@@ -230,7 +228,7 @@ std::vector<double>& Multigrid::x() { return iteration_ ? iteration_->x() : no_x
 void Multigrid::condense_loads() {
   condensed_ = {};
   if (network_.is_reduced) {
-    condensed_ = condense(robot(), network_, team_, loads(), module_copies_.get());
+    condensed_ = condense(robot(), network_, team_, loads(), *module_copies_);
   }
 }
 
@@ -629,9 +627,7 @@ std::vector<base::Vec6<double>> Multigrid::facet_displacement() {
 std::vector<base::Vec6<double>> Multigrid::by_module(std::vector<double>& x) {
   std::vector<Vec> all(robot().modules().size());
   if (!x.empty()) {
-    if (node_copies_) {
-      node_copies_->update(x.data(), 6 * sizeof(double));
-    }
+    node_copies_->update(x.data(), 6 * sizeof(double));
     team_.share(0, network_.node_count, [&](std::size_t begin, std::size_t end) {
       for (std::size_t node = begin; node < end; ++node) {
         std::copy_n(x.begin() + static_cast<std::ptrdiff_t>(6 * node), 6,
@@ -639,7 +635,7 @@ std::vector<base::Vec6<double>> Multigrid::by_module(std::vector<double>& x) {
       }
     });
   }
-  recover(robot(), network_, team_, loads(), condensed_, all, module_copies_.get());
+  recover(robot(), network_, team_, loads(), condensed_, all, *module_copies_);
   return all;
 }
 

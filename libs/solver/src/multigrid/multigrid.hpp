@@ -74,7 +74,7 @@ class Multigrid final : public LinearSystem {
   Vec force_on(const FacetState& facet, std::int32_t node);
   const Mat& known_tangent(const FacetState& facet) const;
 
-  host::Ranks* ranks() const { return options_.ranks(); }
+  host::Ranks& ranks() const { return robot().ranks(); }
 
   bool is_too_slender() const;
   bool is_thin() const;
@@ -96,7 +96,7 @@ class Multigrid final : public LinearSystem {
   Precision precision_;
   Team team_;
   ReducedNetwork network_;
-  std::unique_ptr<host::Halo> module_copies_;  ///< Of a part of a robot.
+  std::unique_ptr<host::Halo> module_copies_;  ///< Of other ranks' modules.
   std::unique_ptr<host::Halo> node_copies_;
   CondensedLoads condensed_;              ///< Where they are not the robot's own.
   std::vector<GroundNode> ground_nodes_;  ///< In the network's order; a node for each facet.

@@ -37,22 +37,19 @@ constexpr std::size_t kColourMax = base::Lattice::kDirectionCountMax + 1;
 /// Builds a network of the modules that an elimination leaves.
 class Builder {
  public:
-  Builder(const Robot& robot, Team& team, const model::RobotPart* part)
+  Builder(const Robot& robot, Team& team)
       : robot_(robot),
         team_(team),
-        part_(part),
-        elimination_(eliminate(robot, team, part)),
-        order_(morton_order(robot, elimination_.is_gone, team, part)),
+        elimination_(eliminate(robot, team)),
+        order_(morton_order(robot, elimination_.is_gone, team)),
         is_cubic_(robot.lattice() == base::kCubic),
         direction_count_(at(robot.lattice().direction_count)) {
     network_.lattice = robot.lattice();
-    network_.ranks = model::ranks_of(part);
+    network_.ranks = robot.ranks();
     network_.is_cubic = host::all(network_.ranks, is_on_floor_only(robot));
     network_.node_count = order_.modules.size();
-    network_.own_count =
-        static_cast<std::size_t>(std::ranges::count_if(order_.modules, [&](const auto& item) {
-          return part == nullptr || at(item.module) < part->own_count;
-        }));
+    network_.own_count = static_cast<std::size_t>(std::ranges::count_if(
+        order_.modules, [&](const auto& item) { return at(item.module) < robot.own_count(); }));
     network_.all_count = host::total(network_.ranks, network_.own_count);
     network_.low = order_.low;
     network_.extent = order_.extent;
@@ -131,7 +128,7 @@ class Builder {
     for (std::size_t direction = 0; direction < direction_count_; ++direction) {
       int length = 0;
       const std::int32_t other = far_end(at(module), direction, length);
-      is_any = is_any || (other != Robot::kNoNeighbour && rank[at(other)] < part_->ranks->rank() &&
+      is_any = is_any || (other != Robot::kNoNeighbour && rank[at(other)] < robot_.ranks().rank() &&
                           colour[at(other)] == colour[at(module)]);
     }
     return is_any;
@@ -140,7 +137,7 @@ class Builder {
   /// First fit along the curve, for this rank's modules: sees those before them and, of other
   /// ranks', the copies that have colours.
   void colour_own(std::vector<std::uint8_t>& colour) const {
-    std::fill_n(colour.begin(), part_ == nullptr ? colour.size() : part_->own_count, kNoColour);
+    std::fill_n(colour.begin(), robot_.own_count(), kNoColour);
     for (std::size_t i = 0; i < network_.own_count; ++i) {
       const std::int32_t module = order_.modules[i].module;
       colour[at(module)] = free_colour(module, colours_around(module, colour));
@@ -151,10 +148,7 @@ class Builder {
   std::uint8_t first_colour() const {
     const bool has_any = network_.own_count > 0;
     const std::uint8_t mine = has_any ? lattice_colour(order_.modules.front().module) : kNoColour;
-    if (part_ == nullptr) {
-      return mine;
-    }
-    const auto firsts = host::gather(*part_->ranks, std::span<const std::uint8_t>(&mine, 1));
+    const auto firsts = host::gather(robot_.ranks(), std::span<const std::uint8_t>(&mine, 1));
     const auto first = std::ranges::find_if(firsts, [](auto one) { return one != kNoColour; });
     return first != firsts.end() ? *first : kNoColour;
   }
@@ -215,30 +209,30 @@ class Builder {
   /// neighbours of two ranks need only have two colours.
   void colour_on_ranks(std::vector<std::uint8_t>& colour) const {
     constexpr int kTrialRoundMax = 8;
-    std::vector<std::int32_t> rank(colour.size(), part_->ranks->rank());
-    for (const host::Copy& copy : part_->copies) {
+    std::vector<std::int32_t> rank(colour.size(), robot_.ranks().rank());
+    for (const host::Copy& copy : robot_.part().copies) {
       rank[at(copy.place)] = copy.original.rank;
     }
-    const auto halo = part_->ranks->make_halo(part_->own_count, part_->copies);
+    const auto halo = robot_.ranks().make_halo(robot_.own_count(), robot_.part().copies);
     guess_colours(colour);
     bool is_any_changed = true;
     for (int round = 0; is_any_changed && round < kTrialRoundMax; ++round) {
       const std::vector<std::uint8_t> before = colour;
       halo->update(colour.data(), sizeof(std::uint8_t));
-      for (const host::Copy& copy : part_->copies) {
+      for (const host::Copy& copy : robot_.part().copies) {
         colour[at(copy.place)] =
-            copy.original.rank < part_->ranks->rank() ? colour[at(copy.place)] : kNoColour;
+            copy.original.rank < robot_.ranks().rank() ? colour[at(copy.place)] : kNoColour;
       }
       const bool is_changed = round == 0 || colour != before;
       if (is_changed) {
         colour_own(colour);
       }
-      is_any_changed = host::any(part_->ranks, is_changed);
+      is_any_changed = host::any(robot_.ranks(), is_changed);
     }
     if (is_any_changed) {
       part_from_other_ranks(rank, *halo, colour);
     }
-    std::fill(colour.begin() + static_cast<std::ptrdiff_t>(part_->own_count), colour.end(),
+    std::fill(colour.begin() + static_cast<std::ptrdiff_t>(robot_.own_count()), colour.end(),
               kNoColour);
   }
 
@@ -265,10 +259,10 @@ class Builder {
   /// Nodes are numbered by colour, along the curve in each; copies, which have none, come last.
   void colour_nodes() {
     std::vector<std::uint8_t> colour(robot_.modules().size(), kNoColour);
-    if (part_ == nullptr) {
-      colour_whole(colour);
-    } else {
+    if (robot_.ranks().is_shared()) {
       colour_on_ranks(colour);
+    } else {
+      colour_whole(colour);
     }
     const auto group = [&](const KeyedModule& item) {
       return std::min<std::size_t>(colour[at(item.module)], kColourMax);
@@ -425,13 +419,14 @@ class Builder {
 
   /// Whose copies those nodes are that are not this rank's own.
   void copy() {
-    if (part_ == nullptr) {
+    if (!robot_.ranks().is_shared()) {
       return;
     }
     std::vector<std::int32_t> node_there = node_of_;
-    part_->ranks->make_halo(part_->own_count, part_->copies)
+    robot_.ranks()
+        .make_halo(robot_.own_count(), robot_.part().copies)
         ->update(node_there.data(), sizeof(std::int32_t));
-    for (const host::Copy& module : part_->copies) {
+    for (const host::Copy& module : robot_.part().copies) {
       const auto place = at(module.place);
       if (at(node_of_[place]) < network_.node_count) {  // Fixed modules are none.
         network_.copies.push_back(
@@ -475,7 +470,6 @@ class Builder {
 
   const Robot& robot_;
   Team& team_;
-  const model::RobotPart* part_;
   Elimination elimination_;
   MortonOrder order_;
   bool is_cubic_;  ///< The lattice.
@@ -487,8 +481,8 @@ class Builder {
 
 }  // namespace
 
-ReducedNetwork make_reduced_network(const Robot& robot, Team& team, const model::RobotPart* part) {
-  return Builder(robot, team, part).build();
+ReducedNetwork make_reduced_network(const Robot& robot, Team& team) {
+  return Builder(robot, team).build();
 }
 
 /// Nodes of one colour lie along the curve.

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "elimination.hpp"
@@ -67,10 +68,10 @@ struct ReducedNetwork {
   base::Lattice lattice;
   bool is_cubic = false;  ///< Whether `cubic` describes it, else `beams`.
   std::size_t node_count = 0;
-  std::size_t own_count = 0;              ///< node_count where there are no copies.
-  std::size_t all_count = 0;              ///< All ranks' own ones together.
-  std::vector<host::Copy> copies;         ///< By node.
-  host::Ranks* ranks = nullptr;           ///< Who owns the originals.
+  std::size_t own_count = 0;       ///< node_count where there are no copies.
+  std::size_t all_count = 0;       ///< All ranks' own ones together.
+  std::vector<host::Copy> copies;  ///< By node.
+  std::reference_wrapper<host::Ranks> ranks = host::single_rank();  ///< Who owns the originals.
   std::vector<std::size_t> colour_start;  ///< First node of each colour, then own_count.
   std::vector<std::int32_t> module;       ///< Node -> module.
   CubicBeams cubic;
@@ -88,8 +89,7 @@ struct ReducedNetwork {
   bool is_reduced = false;  ///< Whether anything was eliminated, by any rank.
 };
 
-ReducedNetwork make_reduced_network(const model::Robot& robot, host::Team& team,
-                                    const model::RobotPart* part = nullptr);
+ReducedNetwork make_reduced_network(const model::Robot& robot, host::Team& team);
 
 /// Finds a whole robot's order and keys again if a hierarchy took them.
 void find_order(const model::Robot& robot, ReducedNetwork& network);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "holdfast/host/ranks.hpp"
@@ -26,7 +27,7 @@ struct CellBox {
 struct SpringGraph {
   std::vector<std::int32_t> order;  ///< Nodes along the Morton curve; copies after them.
   std::vector<host::Copy> copies;
-  host::Ranks* ranks = nullptr;    ///< Who has the other parts; null: this is the whole.
+  std::reference_wrapper<host::Ranks> ranks = host::single_rank();  ///< Who has the other parts.
   std::vector<std::uint64_t> key;  ///< Node -> Morton key of its cell
   std::vector<Point> place;        ///< mm
   std::vector<CellBox> box;        ///< Only in double precision.
@@ -37,6 +38,9 @@ struct SpringGraph {
   std::vector<PackedSpring> springs;
   unsigned shift = 0;     ///< Cells are 2^(shift/3) modules wide.
   bool is_cubic = false;  ///< All springs are along the axes, however coarse the level.
+
+  /// Whether other ranks may have parts.
+  bool is_part() const { return ranks.get().is_shared(); }
 
   /// Nodes that are no copies.
   std::size_t own_count() const { return order.size() - copies.size(); }

@@ -127,7 +127,7 @@ void agree_across_ranks(const SpringGraph& graph, host::Halo& copies,
   for_weak_across([&](std::size_t p, std::size_t, std::size_t q) { partners[p].add(original[q]); });
   copies.update(partners.data(), sizeof(WeakPartners));
   for_weak_across([&](std::size_t p, std::size_t e, std::size_t q) {
-    const host::Original here = {.rank = graph.ranks->rank(),
+    const host::Original here = {.rank = graph.ranks.get().rank(),
                                  .index = static_cast<std::int32_t>(p)};
     edges[e] = partners[p].has(original[q]) && partners[q].has(here) ? 1 : 0;
   });
@@ -136,7 +136,7 @@ void agree_across_ranks(const SpringGraph& graph, host::Halo& copies,
 }  // namespace
 
 std::vector<std::uint8_t> weak_springs(const SpringGraph& graph, host::Team& team,
-                                       host::Halo* copies) {
+                                       host::Halo& copies) {
   if (graph.shift == 0) {
     return {};
   }
@@ -146,8 +146,8 @@ std::vector<std::uint8_t> weak_springs(const SpringGraph& graph, host::Team& tea
     return {};
   }
   std::vector<std::uint8_t> edges = weak_here(graph, is_weak);
-  if (graph.ranks != nullptr) {
-    agree_across_ranks(graph, *copies, edges);
+  if (graph.is_part()) {
+    agree_across_ranks(graph, copies, edges);
   }
   return edges;
 }

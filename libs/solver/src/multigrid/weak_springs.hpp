@@ -26,6 +26,6 @@ namespace holdfast::solver {
 /// finest level each spring is one beam, and none counts as weak. Ranks that share the level ask
 /// together, by what keeps its `copies` up to date.
 std::vector<std::uint8_t> weak_springs(const SpringGraph& graph, host::Team& team,
-                                       host::Halo* copies = nullptr);
+                                       host::Halo& copies);
 
 }  // namespace holdfast::solver

@@ -62,10 +62,12 @@ enum class Work : std::uint8_t { kProduct, kCycle };
 
 class Ranks {
  public:
-  Ranks() = default;
   Ranks(const Ranks&) = delete;
   Ranks& operator=(const Ranks&) = delete;
   virtual ~Ranks() = default;
+
+  /// Whether others may have parts of the problem: of all but the single rank.
+  bool is_shared() const { return is_shared_; }
 
   virtual int rank() const = 0;
   virtual int count() const = 0;
@@ -96,57 +98,103 @@ class Ranks {
   /// numbers. Returns whether it was the task's own preconditioner that served, last for the
   /// residual that x leaves.
   virtual bool solve(const KrylovTask& task, std::span<const double> b, std::span<double> x) = 0;
+
+ protected:
+  explicit Ranks(bool is_shared = true) : is_shared_(is_shared) {}
+
+ private:
+  bool is_shared_;
 };
 
-/// Logs work as long as it lives; without ranks nobody asks.
+/// Copies that there are none of.
+class NoCopies final : public Halo {
+ public:
+  void update(void*, std::size_t) override {}
+};
+
+/// The rank of a problem that one process has as a whole: what it says, all say.
+class SingleRank final : public Ranks {
+ public:
+  SingleRank() : Ranks(false) {}
+
+  int rank() const override { return 0; }
+
+  int count() const override { return 1; }
+
+  double sum(double mine) override { return mine; }
+
+  double max(double mine) override { return mine; }
+
+  void sum(std::span<double>) override {}
+
+  std::vector<std::byte> gather(std::span<const std::byte> mine) override {
+    return {mine.begin(), mine.end()};
+  }
+
+  std::unique_ptr<Halo> make_halo(std::size_t, std::span<const Copy>) override {
+    return std::make_unique<NoCopies>();
+  }
+
+  void log(Work, bool) override {}
+
+  bool is_own_method(const KrylovTask&) override { return true; }
+
+  void watch(const KrylovTask& task) override { task.iterate(task.is_over); }
+
+  /// Never asked, as the own method serves.
+  bool solve(const KrylovTask&, std::span<const double>, std::span<double>) override {
+    return false;
+  }
+};
+
+/// It has no state, so one serves all problems and threads.
+inline Ranks& single_rank() {
+  static SingleRank single;
+  return single;
+}
+
+/// Logs work as long as it lives.
 class Logged {
  public:
-  Logged(Ranks* ranks, Work work) : ranks_(ranks), work_(work) { log(true); }
+  Logged(Ranks& ranks, Work work) : ranks_(ranks), work_(work) { ranks_.log(work_, true); }
 
-  ~Logged() { log(false); }
+  ~Logged() { ranks_.log(work_, false); }
 
   Logged(const Logged&) = delete;
   Logged& operator=(const Logged&) = delete;
 
  private:
-  void log(bool is_begin) {
-    if (ranks_ != nullptr) {
-      ranks_->log(work_, is_begin);
-    }
-  }
-
-  Ranks* ranks_;
+  Ranks& ranks_;
   Work work_;
 };
 
-// What all ranks say together; without ranks what the one says.
+// What all ranks say together; nobody is asked where there is one.
 
-inline double sum(Ranks* ranks, double mine) { return ranks == nullptr ? mine : ranks->sum(mine); }
+inline double sum(Ranks& ranks, double mine) { return ranks.is_shared() ? ranks.sum(mine) : mine; }
 
 template <std::size_t kCount>
-std::array<double, kCount> sum(Ranks* ranks, std::array<double, kCount> mine) {
-  if (ranks != nullptr) {
-    ranks->sum(std::span<double>(mine));
-  }
+std::array<double, kCount> sum(Ranks& ranks, std::array<double, kCount> mine) {
+  ranks.sum(std::span<double>(mine));
   return mine;
 }
 
-inline double max(Ranks* ranks, double mine) { return ranks == nullptr ? mine : ranks->max(mine); }
+inline double max(Ranks& ranks, double mine) { return ranks.is_shared() ? ranks.max(mine) : mine; }
 
-inline bool any(Ranks* ranks, bool mine) {
-  return ranks == nullptr ? mine : ranks->max(mine ? 1 : 0) > 0;
-}
+inline bool any(Ranks& ranks, bool mine) { return max(ranks, mine ? 1 : 0) > 0; }
 
-inline bool all(Ranks* ranks, bool mine) { return !any(ranks, !mine); }
+inline bool all(Ranks& ranks, bool mine) { return !any(ranks, !mine); }
 
-inline std::size_t total(Ranks* ranks, std::size_t mine) {
-  return ranks == nullptr ? mine : static_cast<std::size_t>(ranks->sum(static_cast<double>(mine)));
+inline std::size_t total(Ranks& ranks, std::size_t mine) {
+  return static_cast<std::size_t>(sum(ranks, static_cast<double>(mine)));
 }
 
 /// All ranks' items, in the order of the ranks.
 template <class Item>
 std::vector<Item> gather(Ranks& ranks, std::span<const Item> mine) {
   static_assert(std::is_trivially_copyable_v<Item>);
+  if (!ranks.is_shared()) {
+    return {mine.begin(), mine.end()};
+  }
   const std::vector<std::byte> bytes = ranks.gather(std::as_bytes(mine));
   std::vector<Item> items(bytes.size() / sizeof(Item));
   if (!items.empty()) {

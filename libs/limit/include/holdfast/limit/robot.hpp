@@ -8,7 +8,6 @@
 #include "holdfast/limit/limit_load.hpp"
 #include "holdfast/limit/rigid_stability.hpp"
 #include "holdfast/model/robot.hpp"
-#include "holdfast/model/robot_part.hpp"
 
 /// A robot as what the programs of this room are about: one rigid body on contacts, or a structure
 /// of rigid bodies and joints.
@@ -16,14 +15,12 @@ namespace holdfast::limit {
 
 /// Does the robot, as one rigid body, stay on what it touches? A fixed module or a bonded facet
 /// holds it whatever the load is.
-/// Of a part of a robot the answer is that of the whole, as is what follows.
-RigidStability assess_rigid(const model::Robot& robot, const model::RobotPart* part = nullptr,
-                            bool has_figures = true);
+/// Of a part of a robot the answer is that of the whole.
+RigidStability assess_rigid(const model::Robot& robot, bool has_figures = true);
 
-/// The robot's facets, and its load as one body.
-std::vector<ContactFacet> contact_facets(const model::Robot& robot,
-                                         const model::RobotPart* part = nullptr);
-BodyLoad body_load(const model::Robot& robot, const model::RobotPart* part = nullptr);
+/// The robot's facets, of a part its own, and its load as one body, of a part the whole robot's.
+std::vector<ContactFacet> contact_facets(const model::Robot& robot);
+BodyLoad body_load(const model::Robot& robot);
 
 /// The robot as bodies and joints. Bodies are its modules. Joints are its connections, then what
 /// its facets touch: one joint each, of four corners with friction one for each corner. Bonded

@@ -5,7 +5,6 @@
 #include <array>
 
 #include "holdfast/model/robot.hpp"
-#include "holdfast/model/robot_part.hpp"
 
 namespace holdfast::model {
 
@@ -17,10 +16,10 @@ struct Mass {
 
 /// The node of one of a robot's modules, mm, the same for all its parts. Sums of moments are taken
 /// about it: far from where coordinates begin they would lose the digits that decide.
-std::array<double, 3> common_node_mm(const Robot& robot, const RobotPart* part = nullptr);
+std::array<double, 3> common_node_mm(const Robot& robot);
 
 /// The mass of all modules, planned ones too, and of what they carry; of a part of a robot that of
 /// the whole.
-Mass mass_of(const Robot& robot, const RobotPart* part = nullptr);
+Mass mass_of(const Robot& robot);
 
 }  // namespace holdfast::model

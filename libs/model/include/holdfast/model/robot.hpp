@@ -20,6 +20,7 @@
 #include "holdfast/model/environment.hpp"
 #include "holdfast/model/loads.hpp"
 #include "holdfast/model/material.hpp"
+#include "holdfast/model/robot_part.hpp"
 
 /// A whole robot with the step that is planned for it: modules, connections, supports.
 namespace holdfast::model {
@@ -134,13 +135,21 @@ class Robot {
   /// as many as the machine has cores.
   static base::Result<Robot> create(const RobotSpec& spec, int thread_count = 0);
 
-  /// What one of several processes has of a robot (robot_part.hpp): the first `own_count` of the
-  /// existing modules are its own, the others copies of their neighbours, and none is planned.
-  /// Facets and connections() are those of its own modules alone, of connections the first module,
-  /// so that all processes together have each once. That the whole robot is connected and held is
-  /// not checked here.
-  static base::Result<Robot> create_part(const RobotSpec& spec, std::size_t own_count,
+  /// What one of several processes has of a robot: the first own_count of the existing modules are
+  /// its own, the others copies of their neighbours, and none is planned. Facets and connections()
+  /// are those of its own modules alone, of connections the first module, so that all processes
+  /// together have each once. That the whole robot is connected and held is not checked here.
+  static base::Result<Robot> create_part(const RobotSpec& spec, RobotPart part,
                                          int thread_count = 1);
+
+  /// Which part of the robot this is; all of it, unless create_part() made it.
+  const RobotPart& part() const { return part_; }
+
+  /// Who else has a part of the robot. All of them ask the same in the same order.
+  host::Ranks& ranks() const { return part_.ranks; }
+
+  /// How many modules are no copies of other ranks'.
+  std::size_t own_count() const { return part_.own_count; }
 
   /// Existing modules first, then the planned ones, each in the order of the spec.
   std::span<const Module> modules() const { return modules_; }
@@ -282,7 +291,13 @@ class Robot {
   std::size_t fixed_count_ = 0;
   std::size_t released_count_ = 0;
   bool has_bonded_facets_ = false;
+  RobotPart part_;
 };
+
+/// How many modules the whole robot has, of all ranks.
+inline std::size_t whole_module_count(const Robot& robot) {
+  return host::total(robot.ranks(), robot.own_count());
+}
 
 /// In which cells the floor lets no further module be: Robot::create() refuses one below a floor
 /// that another rests on, and one on a floor that another is below.

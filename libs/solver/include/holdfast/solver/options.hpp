@@ -9,7 +9,6 @@
 #include <limits>
 
 #include "holdfast/mechanics/ground_contact.hpp"
-#include "holdfast/model/robot_part.hpp"
 #include "holdfast/solver/contact_journal.hpp"
 #include "holdfast/solver/precision.hpp"
 
@@ -31,6 +30,7 @@ struct EquilibriumOptions {
       std::min(std::uint64_t{4} << 30U, std::uint64_t{std::numeric_limits<std::size_t>::max() / 2});
   /// Newton steps per contact problem.
   int step_count_max = 100;
+  /// Parts of a robot are solved by multigrid alone, which their processes must say here.
   Method method = Method::kAutomatic;
   /// The precision that multigrid begins with. Where single is not enough it takes double.
   Precision precision = Precision::kSingle;
@@ -54,14 +54,8 @@ struct EquilibriumOptions {
   /// Called after every iteration of multigrid with the error that is left, as a share of the
   /// first.
   std::function<void(int iteration, double error)> progress = {};
-  /// Which part of a robot that several processes share the given one is; null: it is the whole.
-  /// They then ask the same in the same order, and by multigrid, which they must say here.
-  const model::RobotPart* part = nullptr;
   /// Remembers contact states beyond this run; null: nobody does.
   ContactJournal* journal = nullptr;
-
-  /// Who else has a part of the robot; null: nobody.
-  host::Ranks* ranks() const { return model::ranks_of(part); }
 };
 
 /// The law of contact with the ground.

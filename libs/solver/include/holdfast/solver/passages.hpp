@@ -6,13 +6,12 @@
 #include <vector>
 
 #include "holdfast/model/robot.hpp"
-#include "holdfast/model/robot_part.hpp"
 
 namespace holdfast::solver {
 
 /// The axis, that is half of a direction, along which each module of a part of a robot only passes
 /// forces on, or -1; of copies what their ranks say. The solver makes straight runs of such modules
 /// into one beam, for which each rank that has one of them needs copies of all and of both ends.
-std::vector<std::int8_t> passage_axes(const model::Robot& robot, const model::RobotPart& part);
+std::vector<std::int8_t> passage_axes(const model::Robot& robot);
 
 }  // namespace holdfast::solver

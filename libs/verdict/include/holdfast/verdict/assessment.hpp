@@ -161,8 +161,7 @@ inline bool breaks(double load_ratio) { return load_ratio >= 1 - kLoadRatioTie; 
 /// Whether weak springs of open or tilted facets, part of the paper's law, may carry part of the
 /// load in the assessment's equilibrium, as supports are anywhere: on a floor all that they can do
 /// is pull down. Then the exact law is asked as well.
-bool has_pulling_facets(const model::Robot& robot, const Assessment& assessment,
-                        const model::RobotPart* part = nullptr);
+bool has_pulling_facets(const model::Robot& robot, const Assessment& assessment);
 
 /// Whether it stays where it is, as far as that is known: none where the verdict hangs on it.
 inline std::optional<bool> known_stability(const Assessment& assessment) {
@@ -172,8 +171,7 @@ inline std::optional<bool> known_stability(const Assessment& assessment) {
 
 /// What the rigid body says of a robot, and nothing else: no verdict, no reasons. On supports
 /// anywhere the tilt and the friction needed only if asked for.
-Assessment assess_rigidly(const model::Robot& robot, const model::RobotPart* part = nullptr,
-                          bool has_figures = true);
+Assessment assess_rigidly(const model::Robot& robot, bool has_figures = true);
 
 /// Seeks the equilibrium of a robot and says what follows from it.
 Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& options = {});

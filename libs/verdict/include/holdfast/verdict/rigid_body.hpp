@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "holdfast/model/robot.hpp"
-#include "holdfast/model/robot_part.hpp"
 
 /// The rigid body on flat ground (Sec. III-B of [Piranda 2021]), decided exactly for cubes.
 ///
@@ -44,11 +43,11 @@ inline constexpr double kMarginTie = 1e-9;
 
 /// Whether all facets lie in one level plane and can lift, and only weight acts, straight down:
 /// then the support polygon decides.
-bool is_on_flat_floor(const model::Robot& robot, const model::RobotPart* part = nullptr);
+bool is_on_flat_floor(const model::Robot& robot);
 
 /// For a robot that is_on_flat_floor() all of it; for any other only the centre of mass, no polygon
 /// and no margin, and `is_stable` if something holds it fast.
-RigidBody assess_rigid_body(const model::Robot& robot, const model::RobotPart* part = nullptr);
+RigidBody assess_rigid_body(const model::Robot& robot);
 
 /// What assess_rigid_body() says of a robot with one more module, again and again, without looking
 /// at the robot again: to the same digits if its mass is exact, else but for rounding. For robots

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include "holdfast/verdict/assessment.hpp"
+
+namespace holdfast::verdict {
+
+/// What a verdict on a robot begins with: facts that hold whatever its equilibrium is. They are
+/// found once, and of a part of a robot they are those of the whole, the same at all ranks.
+struct Situation {
+  explicit Situation(const model::Robot& robot);
+
+  const model::Robot& robot;
+  std::size_t module_count;
+  bool has_connections;
+  bool has_payloads;
+  /// Whether a facet can lift, tilt or slip: contact makes a problem of its own.
+  bool has_contact;
+  bool is_on_flat_floor;
+  /// Whether cubes that weigh the same stand on a flat floor, or nowhere: the rigid body is known
+  /// in whole numbers.
+  bool is_exact;
+  StabilityRule rule;
+};
+
+/// assess_rigid_body() of a robot whose situation is known.
+RigidBody rigid_body(const Situation& here);
+
+}  // namespace holdfast::verdict
