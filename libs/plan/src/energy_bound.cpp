@@ -27,12 +27,6 @@ constexpr double kRatioMax = 1 - 1e-3;
 /// New modules above a section are brought into balance so many times there and back.
 constexpr int kSweepCount = 2;
 
-/// Where a load ratio is above this, a connection that statics alone decides is told from others.
-constexpr double kRatioHeavy = 0.3;
-
-/// What statics says of a connection may be off by that share, by rounding.
-constexpr double kRoundingOfStatics = 1e-9;
-
 /// A load that costs more than this share of what the load ratio leaves room for, if it goes down
 /// through a single file of modules, is spread: that takes up to a millisecond.
 constexpr double kSpreadShare = 0.1;
@@ -63,7 +57,6 @@ EnergyBound::EnergyBound(const model::Robot& target, const LocalAdjoints& adjoin
       room_(target.facets().size()),
       nearby_(target.facets().size()),
       watched_(target),
-      cuts_(target),
       sway_(target, changes_.stiffness()) {
   const Vec& h = changes_.stiffness();
   const double b = target.foot_half_width_mm();
@@ -372,23 +365,7 @@ bool EnergyBound::begin(const std::vector<Element>& elements, const verdict::Ass
   }
   std::ranges::for_each(facets_, [&](std::size_t facet) { look_at_facet(facet); });
   watched_.begin(elements, u_);
-  find_cuts(elements);
   return true;
-}
-
-/// Tells what statics alone decides from the rest, where that bears less.
-void EnergyBound::find_cuts(const std::vector<Element>& elements) {
-  cuts_.clear();
-  if (section_ != nullptr || solved_ratio_ < kRatioHeavy) {
-    return;
-  }
-  cuts_.assign(elements);
-  const double others = cuts_.load_ratio_of_others(u_) + ratio_per_norm_ * solved_error_;
-  if (others < solved_ratio_) {
-    solved_ratio_ = others;
-  } else {
-    cuts_.clear();
-  }
 }
 
 /// Whether these modules are there and no others: then all of them hang already.
@@ -614,7 +591,6 @@ std::optional<double> EnergyBound::add(Element element) {
   node.is_there = true;
   node.is_new = true;
   node.place = new_.size();
-  cuts_.add(module);
   sway_.attach(module);
   if (section_ != nullptr) {
     return add_above_section(module);
@@ -715,36 +691,11 @@ void EnergyBound::bear_by_section() {
   section_ratio_ = section_->load_ratio(resultant_);  // A beam may bear both.
 }
 
-/// The largest load ratio of (s + h w) / 2 in any beam where these have changed, but for cuts, if
-/// the displacements of the solved robot are exact.
-double EnergyBound::changed_ratio() const {
-  double largest = 0;
-  changes_.for_each_beam([&](std::size_t module, int direction, Vec half) {
-    const std::size_t other = base::at(target_.connected()[module][base::at(direction)]);
-    if (cuts_.contains(module, other)) {
-      return;
-    }
-    if (!nodes_[module].is_new && !nodes_[other].is_new) {
-      base::add_to(
-          half, beam_.middle_force(static_cast<base::Direction>(direction), u_[module], u_[other]));
-    }
-    if (ratio_per_norm_ * ratio_per_norm_ * changes_.energy_of(half) > largest * largest) {
-      largest = std::max(largest, connection_ratio(target_, module, other, direction, half));
-    }
-  });
-  return largest;
-}
-
-/// That of the largest load ratio, if every facet is pressed all over.
+/// A bound of the largest load ratio, if every facet is pressed all over.
 std::optional<double> EnergyBound::bound() {
   const double radius = energy_error() / 2;
-  const double off = ratio_per_norm_ * radius;
-  const double others = std::max(solved_ratio_, cuts_.released_ratio());
-  double ratio = others + changes_.load_ratio() + section_ratio_ + off;
-  if (!(ratio < kRatioMax) && section_ == nullptr && others + off < kRatioMax) {
-    ratio = std::max(others, changed_ratio() + ratio_per_norm_ * solved_error_) + off;
-  }
-  ratio = std::max(ratio, cuts_.load_ratio() * (1 + kRoundingOfStatics));
+  const double ratio =
+      solved_ratio_ + changes_.load_ratio() + section_ratio_ + ratio_per_norm_ * radius;
   if (!(ratio < kRatioMax) || !are_pressed(radius + solved_error_ / 2)) {
     return std::nullopt;
   }

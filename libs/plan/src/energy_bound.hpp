@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "changed_forces.hpp"
-#include "cut_connections.hpp"
 #include "followed_robot.hpp"
 #include "holdfast/model/lattice_beam.hpp"
 #include "holdfast/model/robot.hpp"
@@ -44,9 +43,6 @@ namespace holdfast::plan {
 /// down. Where that way leads far aside, so that its beams bend, s is h w in the module's own
 /// beams, and what these put on its neighbours goes down through all modules near instead
 /// (LoadSpread).
-///
-/// Where c(solved) + c(change of s) / 2 is too much c((s + h w) / 2) is found itself, of every beam
-/// in which s or h w has changed.
 ///
 /// The centre of mass moves as u says, give or take what |s - h w| leaves open (SwayBound).
 ///
@@ -93,10 +89,6 @@ class EnergyBound {
   /// its adjoint, since this was asked last.
   std::map<std::size_t, int> take_doubtful();
 
-  /// Connections whose forces statics alone gives, as long as it does: where they bear more than
-  /// all others, their exact load ratios are a part of the bound. None are known else.
-  const CutConnections& cuts() const { return cuts_; }
-
   /// How far the displacements are off in the energy norm, at most.
   double energy_error() const {
     return std::sqrt(std::max(0.0, changes_.energy())) + solved_error_;
@@ -136,12 +128,10 @@ class EnergyBound {
   void hang_all(const std::vector<Element>& elements);
   void hang_section();
   void settle_new();
-  void find_cuts(const std::vector<Element>& elements);
   void forget_changes();
   void forget_nearby(const std::vector<Element>& elements);
   void forget_nearby(const std::vector<bool>& is_changed);
   std::optional<double> bound();
-  double changed_ratio() const;
   bool has_root(std::size_t module) const;
   double lean(std::size_t module, std::size_t neighbour) const;
   void hang(std::size_t module);
@@ -185,7 +175,6 @@ class EnergyBound {
   std::vector<double> room_;         ///< By facet of the target: what |s - h w| / 2 may be.
   std::vector<std::optional<LocalAdjoint>> nearby_;  ///< By facet, as far as asked for.
   WatchedFacets watched_;
-  CutConnections cuts_;
   SwayBound sway_;
   verdict::MovedMass moved_;             ///< By u_, of all modules that are there,
   verdict::MovedMass still_moved_;       ///< and when the robot was solved.

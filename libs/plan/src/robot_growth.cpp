@@ -532,7 +532,7 @@ void RobotGrowth::Piece::begin(const ElementSet& state, const verdict::Assessmen
   is_followed_ = has_bound_ && !is_slender && tools_.followed != nullptr && is_large &&
                  tools_.followed->worth().begin(assessment.equilibrium.iteration_count);
   if (is_followed_) {
-    tools_.followed->begin(state, assessment, tools_.bound.cuts());
+    tools_.followed->begin(state, assessment);
   }
 }
 
