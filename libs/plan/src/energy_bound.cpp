@@ -42,14 +42,13 @@ bool is_plain(const model::Robot& target) {
 
 }  // namespace
 
-EnergyBound::EnergyBound(const model::Robot& target, const LocalAdjoints& adjoints, bool spreads)
+EnergyBound::EnergyBound(const model::Robot& target, const LocalAdjoints& adjoints)
     : target_(target),
       adjoints_(adjoints),
       local_(target),
       beam_(model::beam_section(target.material()), target.lattice()),
       changes_(target),
       spread_(target),
-      spreads_(spreads),
       ratio_per_norm_(model::load_ratio_per_energy_norm(target)),
       first_facet_(model::facet_starts(target)),
       nodes_(target.modules().size()),
@@ -206,7 +205,7 @@ double EnergyBound::way_energy(std::size_t from) const {
 /// Whether a module's load, on a single file of modules, takes much of what there is room for.
 bool EnergyBound::is_far_aside(std::size_t module) const {
   const double norm_max = 2 * (kRatioMax - solved_ratio_) / ratio_per_norm_;
-  return spreads_ && way_energy(module) > kSpreadShare * norm_max * norm_max;
+  return way_energy(module) > kSpreadShare * norm_max * norm_max;
 }
 
 /// What a module's beams put on its neighbours, but for fixed ones.

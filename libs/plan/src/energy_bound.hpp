@@ -54,9 +54,8 @@ namespace holdfast::plan {
 /// are brought into balance on the core where it is now.
 class EnergyBound {
  public:
-  /// Keeps references to the whole robot and to what is known of its facets. In thin robots, where
-  /// few modules are near any way, `spreads` is better false.
-  EnergyBound(const model::Robot& target, const LocalAdjoints& adjoints, bool spreads = true);
+  /// Keeps references to the whole robot and to what is known of its facets.
+  EnergyBound(const model::Robot& target, const LocalAdjoints& adjoints);
 
   /// Begins with a solved robot, whose modules are `elements` of the target, in that order. False
   /// if nothing can be built on it: it is not safe, a facet tilts or is open, or the polygon does
@@ -163,7 +162,6 @@ class EnergyBound {
   model::LatticeBeam<double> beam_;
   ChangedForces changes_;
   LoadSpread spread_;
-  bool spreads_ = true;
   double ratio_per_norm_ = 0;
   double facet_per_norm_x_ = 0;  ///< How much a facet's lack may be off, by norm.
   double facet_per_norm_y_ = 0;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "holdfast/plan/transition.hpp"
@@ -22,6 +23,9 @@ inline base::Cell sum(const base::Cell& a, const base::Cell& b) {
 
 /// Where a cell is after half of `doubled`, which is even, axial coordinates.
 base::Cell moved(const base::Lattice& lattice, const base::Cell& from, const base::Cell& doubled);
+
+/// What is wrong with a step, in one of its stages.
+base::Error fault_in(Stage stage, const std::string& message);
 
 /// Finds the ways of the groups of one step, see Group. Keeps references.
 class WayFinder {
