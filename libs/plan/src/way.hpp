@@ -21,6 +21,11 @@ inline base::Cell sum(const base::Cell& a, const base::Cell& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
 
+/// To the neighbours of a cell, axial.
+inline std::span<const base::Cell> steps_of(const base::Lattice& lattice) {
+  return std::span(lattice.steps).first(base::at(lattice.direction_count));
+}
+
 /// Where a cell is after half of `doubled`, which is even, axial coordinates.
 base::Cell moved(const base::Lattice& lattice, const base::Cell& from, const base::Cell& doubled);
 
