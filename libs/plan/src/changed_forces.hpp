@@ -68,16 +68,6 @@ class ChangedForces {
   /// Weighs all beams anew.
   void weigh_all();
 
-  /// Whether a beam, or a facet, bears more or was weighed since the last clear().
-  bool has_changed(std::size_t module, int direction) const {
-    return is_touched_[beam_from(module, direction)] != 0;
-  }
-
-  bool has_changed(std::size_t facet) const { return is_facet_touched_[facet] != 0; }
-
-  /// What a module hands on more to its neighbour in a direction.
-  Vec change(std::size_t module, int direction) const;
-
   Vec facet_change(std::size_t facet) const { return facets_[facet].change; }
 
  private:

@@ -458,39 +458,6 @@ void EnergyBound::forget_changes() {
   section_ratio_ = 0;
 }
 
-/// The inner product of an adjoint's forces, for fz and two torques, with s - h w.
-std::array<double, 3> EnergyBound::product_with(const LocalAdjoint& nearby) const {
-  std::array<double, 3> sum{};
-  const auto add = [&](const Vec& change, const auto& force_of) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec force = force_of(k);
-      for (std::size_t i = 0; i < 6; ++i) {
-        sum[k] += force[i] * change[i] / changes_.stiffness()[i];
-      }
-    }
-  };
-  const auto& moved = nearby.forces->moved;
-  for (const LocalAdjoint::Beam& beam : nearby.forces->beams) {
-    const std::size_t module = nearby.region[base::at(beam.a)];
-    if (changes_.has_changed(module, beam.direction)) {
-      add(changes_.change(module, beam.direction), [&](std::size_t k) {
-        return beam_.middle_force(static_cast<base::Direction>(beam.direction),
-                                  moved[base::at(beam.a)][k], moved[base::at(beam.b)][k]);
-      });
-    }
-  }
-  for (std::size_t i = 0; i < nearby.region.size(); ++i) {
-    const std::size_t module = nearby.region[i];
-    for (std::size_t facet = first_facet_[module]; facet < first_facet_[module + 1]; ++facet) {
-      if (changes_.has_changed(facet)) {
-        add(changes_.facet_change(facet),
-            [&](std::size_t k) { return trial_force(target_.facets()[facet], moved[i][k]); });
-      }
-    }
-  }
-  return sum;
-}
-
 /// Whether a facet that was there when the robot was solved stays pressed all over, as far as the
 /// modules near it show, if |s - h w| / 2 is no more than `radius`.
 bool EnergyBound::is_pressed_nearby(std::size_t index, double radius) {
@@ -505,28 +472,16 @@ bool EnergyBound::is_pressed_nearby(std::size_t index, double radius) {
       return nodes_[module].is_there && !nodes_[module].is_new;
     });
   }
-  if (nearby->forces->moved.empty() ||
+  if (!nearby->gram ||
       std::ranges::any_of(nearby->patch, [&](std::size_t i) { return nodes_[i].is_host; })) {
     return false;
   }
-  // What all forces of changes are worth at most is no more than `radius` either, and needs no sum.
-  return holds_nearby(facet, *nearby, radius, std::nullopt) ||
-         holds_nearby(facet, *nearby, radius, product_with(*nearby));
-}
-
-/// The same if its adjoint has these products with s - h w, or any.
-bool EnergyBound::holds_nearby(const model::Facet& facet, const LocalAdjoint& nearby, double radius,
-                               const std::optional<std::array<double, 3>>& product) const {
   const Vec force = trial_force(facet, u_[base::at(facet.module)]);
   const double b = target_.foot_half_width_mm();
   const auto holds = [&](double torque, double mx, double my, double lack_per_norm) {
     const double slack = -force[2] * b - std::abs(torque) - lack_per_norm * solved_error_;
     return std::ranges::all_of(std::array{1.0, -1.0}, [&](double sign) {
-      const double off = nearby.forces->norm({b, sign * mx, sign * my}) * radius;
-      const auto shared = [&](const std::array<double, 3>& p) {
-        return std::abs(b * p[0] + sign * (mx * p[1] + my * p[2])) / 2;
-      };
-      return off + (product ? shared(*product) : off) < slack;
+      return 2 * radius * nearby->gram->norm({b, sign * mx, sign * my}) < slack;
     });
   };
   return holds(force[3], 1, 0, facet_per_norm_x_) && holds(force[4], 0, 1, facet_per_norm_y_);
@@ -559,23 +514,20 @@ double EnergyBound::strain_by_adjoint(std::size_t index) {
     return kUnknown;
   }
   const double b = target_.foot_half_width_mm();
-  const auto strain = [&](const std::optional<WatchedFacets::Answer>& known) {
-    double largest = known ? 0 : kUnknown;
-    const auto look = [&](double torque, double x, double y) {
-      const double slack = -known->force[0] * b - std::abs(torque);
-      for (const double sign : {1.0, -1.0}) {
-        const double error = known->error({b, sign * x, sign * y}, energy_error());
-        largest = error < slack ? std::max(largest, error / slack) : kUnknown;
-      }
-    };
-    if (known) {
-      look(known->force[1], 1, 0);
-      look(known->force[2], 0, 1);
+  const auto known = watched_.find(index, u_);
+  double largest = known ? 0 : kUnknown;
+  const auto look = [&](double torque, double x, double y) {
+    const double slack = -known->force[0] * b - std::abs(torque);
+    for (const double sign : {1.0, -1.0}) {
+      const double error = known->error({b, sign * x, sign * y}, energy_error());
+      largest = error < slack ? std::max(largest, error / slack) : kUnknown;
     }
-    return largest;
   };
-  const double by_core = strain(watched_.find(index, u_));
-  return by_core < kStrainMax ? by_core : std::min(by_core, strain(watched_.find_finer(index, u_)));
+  if (known) {
+    look(known->force[1], 1, 0);
+    look(known->force[2], 0, 1);
+  }
+  return largest;
 }
 
 std::map<std::size_t, int> EnergyBound::take_doubtful() { return std::exchange(doubtful_, {}); }

@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "adjoint.hpp"
 #include "changed_forces.hpp"
 #include "followed_robot.hpp"
 #include "holdfast/model/lattice_beam.hpp"
@@ -17,11 +18,9 @@
 #include "holdfast/verdict/assessment.hpp"
 #include "holdfast/verdict/moved_mass.hpp"
 #include "load_spread.hpp"
-#include "local_adjoint.hpp"
 #include "local_balance.hpp"
 #include "section_response.hpp"
 #include "sway_bound.hpp"
-#include "watched_facets.hpp"
 
 namespace holdfast::plan {
 
@@ -47,7 +46,7 @@ namespace holdfast::plan {
 /// The centre of mass moves as u says, give or take what |s - h w| leaves open (SwayBound).
 ///
 /// Facets for which that is too coarse are looked at by what is known of them from the modules
-/// around (LocalAdjoint) or, where somebody has found it, from the whole robot (FacetAdjoint).
+/// around (LocalAdjoint) or, where somebody has found it, from the whole robot (Adjoint).
 ///
 /// Above a section of a slender robot, ways end at the section's modules, and the core moves by its
 /// answer to the resultant there (SectionResponse): s and h w then change alike below. New modules
@@ -79,7 +78,7 @@ class EnergyBound {
 
   /// From the next begin() on the forces of these facets are looked at with their adjoints, as long
   /// as modules are attached in the order in which these have grown.
-  void take_adjoints(const GrownAdjoints& adjoints) { watched_.take(adjoints); }
+  void take_adjoints(const Adjoints& adjoints) { watched_.take(adjoints); }
 
   /// Whether the adjoint of a facet has been asked for since it was taken.
   bool has_asked_for(std::size_t facet) const { return watched_.has_asked_for(facet); }
@@ -149,10 +148,7 @@ class EnergyBound {
   verdict::MovedMass moved_mass() const;
   void look_at_facet(std::size_t facet);
   Vec trial_force(const model::Facet& facet, const Vec& u) const;
-  std::array<double, 3> product_with(const LocalAdjoint& nearby) const;
   bool is_pressed_nearby(std::size_t facet, double radius);
-  bool holds_nearby(const model::Facet& facet, const LocalAdjoint& nearby, double radius,
-                    const std::optional<std::array<double, 3>>& product) const;
   bool are_pressed(double radius);
   double strain_by_adjoint(std::size_t facet);
 

@@ -144,10 +144,10 @@ class FollowedRobot {
   std::size_t solved_count_ = 0;  ///< How many of them these are.
   std::vector<Loaded> loaded_;    ///< As most_loaded_first(); empty: not yet asked for.
   std::vector<Vec> u_;            ///< By module of the target.
-  std::vector<Vec> given_;   ///< By module of the core: loads beyond its own that it has taken.
-  std::vector<Vec> moved_;   ///< And how far it has moved by them, z.
-  std::vector<Vec> change_;  ///< The loads that it may take next,
-  std::vector<Vec> motion_;  ///< and how it would move by them.
+  std::vector<Vec> given_;     ///< By module of the core: loads beyond its own that it has taken.
+  std::vector<Vec> moved_;     ///< And how far it has moved by them, z.
+  std::vector<Vec> change_;    ///< The loads that it may take next,
+  std::vector<Vec> motion_;    ///< and how it would move by them.
   double core_error_ = 0;      ///< In the energy norm, of the solution that it is taken from,
   double motion_error_ = 0;    ///< and of moved_; infinite if it is not known.
   double solution_error_ = 0;  ///< Of the last one for the core.

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 
+#include "cut_vertices.hpp"
 #include "holdfast/base/rng.hpp"
 #include "holdfast/host/team.hpp"
 #include "holdfast/verdict/moved_mass.hpp"
@@ -154,62 +155,18 @@ void RobotGrowth::move_to(const ElementSet& state) {
   }
 }
 
-/// Modules without which the others would not hang together: cut vertices, by Tarjan's depth-first
-/// search without recursion.
-std::vector<bool> RobotGrowth::are_needed(const ElementSet& state) const {
-  struct Visit {
-    Element module;
-    Element parent;
-    std::size_t next = 0;
-  };
-
-  std::vector<bool> needed(element_count());
-  std::vector<std::int32_t> order(element_count(), -1);
-  std::vector<std::int32_t> low(element_count());
-  const Element root = state.elements().front();
-  std::vector<Visit> stack = {{.module = root, .parent = -1}};
-  std::int32_t visited = 0;
-  int root_child_count = 0;
-  order[base::at(root)] = low[base::at(root)] = visited++;
-  while (!stack.empty()) {
-    Visit& top = stack.back();
-    const auto neighbours = target_.connected()[base::at(top.module)];
-    std::int32_t& low_here = low[base::at(top.module)];
-    if (top.next < neighbours.size()) {
-      const std::int32_t other = neighbours[top.next++];
-      if (other == model::Robot::kNoNeighbour || !state.contains(other) || other == top.parent) {
-        continue;
-      }
-      if (order[base::at(other)] >= 0) {
-        low_here = std::min(low_here, order[base::at(other)]);
-        continue;
-      }
-      order[base::at(other)] = low[base::at(other)] = visited++;
-      root_child_count += top.module == root ? 1 : 0;
-      stack.push_back({.module = other, .parent = top.module});
-      continue;
-    }
-    const Visit done = top;
-    stack.pop_back();
-    if (done.parent >= 0) {
-      std::int32_t& low_parent = low[base::at(done.parent)];
-      low_parent = std::min(low_parent, low[base::at(done.module)]);
-      if (done.parent != root && low[base::at(done.module)] >= order[base::at(done.parent)]) {
-        needed[base::at(done.parent)] = true;
-      }
-    }
-  }
-  needed[base::at(root)] = root_child_count > 1;
-  return needed;
-}
-
 /// Modules that leave a connected robot with a support behind.
 std::vector<Element> RobotGrowth::removable(const ElementSet& state) const {
   std::vector<Element> list;
   if (state.size() < 2) {
     return list;
   }
-  const std::vector<bool> needed = are_needed(state);
+  const std::vector<bool> needed = cut_vertices(
+      element_count(), state.elements().front(), target_.connected()[0].size(),
+      [&](Element module, std::size_t direction) {
+        const std::int32_t other = target_.connected()[base::at(module)][direction];
+        return other != model::Robot::kNoNeighbour && state.contains(other) ? other : -1;
+      });
   const auto is_support = [&](Element element) {
     return target_.modules()[base::at(element)].support != model::Support::kNone;
   };
@@ -560,7 +517,7 @@ void RobotGrowth::grow_adjoints(const ElementSet& state, std::span<const Element
   const std::vector<Element> elements = state.elements();
   host::Team team(thread_count_);
   team.each(facet_adjoints_.size(), [&](std::size_t i) {
-    GrownAdjoint& adjoint = *facet_adjoints_[i];
+    Adjoint& adjoint = *facet_adjoints_[i];
     if (adjoint.grow_to(elements)) {
       std::ranges::for_each(run, [&](Element element) { adjoint.grow(base::at(element)); });
     }
@@ -583,9 +540,8 @@ void RobotGrowth::renew_adjoints(const ElementSet& state, const std::function<bo
            });
   });
   if (!facets.empty()) {
-    for (const auto& core : find_adjoints(spec_, target_, state, facets, thread_count_, is_late)) {
-      facet_adjoints_.push_back(std::make_shared<GrownAdjoint>(target_, core));
-    }
+    std::ranges::move(find_adjoints(spec_, target_, state, facets, thread_count_, is_late),
+                      std::back_inserter(facet_adjoints_));
   }
   if (known_count + facet_adjoints_.size() > 0) {
     std::ranges::for_each(bounds_,

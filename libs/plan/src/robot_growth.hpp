@@ -97,7 +97,6 @@ class RobotGrowth final : public GrowingStructure {
   void remove(Element element);
   double room_mm(Balance& balance) const;
   verdict::Assessment assess_alone(const ElementSet& state) const;
-  std::vector<bool> are_needed(const ElementSet& state) const;
   std::vector<Element> removable(const ElementSet& state) const;
   std::vector<Element> reachable(std::vector<Element> list, const ElementSet& state,
                                  Sense sense) const;
@@ -117,7 +116,7 @@ class RobotGrowth final : public GrowingStructure {
   int thread_count_;
   LocalAdjoints adjoints_;
   std::vector<EnergyBound> bounds_;        ///< By piece of a run.
-  GrownAdjoints facet_adjoints_;           ///< All of these know them.
+  Adjoints facet_adjoints_;                ///< All of these know them.
   std::vector<FollowedRobot> followed_;    ///< The same.
   std::vector<SectionResponse> sections_;  ///< The same.
   std::vector<LayerPlace> places_;         ///< By module, about the supports and the core.
