@@ -75,16 +75,14 @@ bool EnergyBound::has_root(std::size_t module) const {
 /// How far a way down through this neighbour leads aside within two steps, squared, in mm^2.
 double EnergyBound::lean(std::size_t module, std::size_t neighbour) const {
   const Node& next = nodes_[neighbour];
-  const Vec& below =
-      changes_.place(next.way_count == 0 ? neighbour : base::at(next.ways.front().to));
+  const Vec& below = changes_.place(next.way.to < 0 ? neighbour : base::at(next.way.to));
   const double x = below[0] - changes_.place(module)[0];
   const double y = below[1] - changes_.place(module)[1];
   return x * x + y * y;
 }
 
-/// Finds the ways down: to neighbours that are nearest to a support. The first one is the parent:
-/// that through which the way leads down most nearly straight, as a weight that is carried aside
-/// costs much.
+/// Finds the way down: to one of the neighbours that are nearest to a support, that through which
+/// it leads down most nearly straight, as a weight that is carried aside costs much.
 void EnergyBound::hang(std::size_t module) {
   Node& node = nodes_[module];
   const int straight = base::index(base::down(target_.lattice()));
@@ -97,21 +95,12 @@ void EnergyBound::hang(std::size_t module) {
         nodes_[base::at(other)].depth > depth_min) {
       continue;
     }
-    if (nodes_[base::at(other)].depth < depth_min) {
-      depth_min = nodes_[base::at(other)].depth;
-      node.way_count = 0;
-    }
     const double aside = lean(module, base::at(other));
-    const bool is_best =
-        node.way_count == 0 || aside < lean_min || (aside == lean_min && d == straight);
-    if (node.way_count < kWayMax) {
-      node.ways[node.way_count++] = {.to = other, .direction = d};
-    } else if (is_best) {
-      node.ways.back() = {.to = other, .direction = d};
-    }
-    if (is_best) {
+    if (nodes_[base::at(other)].depth < depth_min || aside < lean_min ||
+        (aside == lean_min && d == straight)) {
+      depth_min = nodes_[base::at(other)].depth;
       lean_min = aside;
-      std::swap(node.ways.front(), node.ways[node.way_count - 1]);
+      node.way = {.to = other, .direction = d};
     }
   }
   node.depth = has_root(module) ? 0 : depth_min + 1;
@@ -177,25 +166,12 @@ void EnergyBound::look_at_facet(std::size_t index) {
                           (limit - std::abs(moved[4] + change[4] / 2)) / facet_per_norm_y_);
 }
 
-/// The way that leads nearest to below a place.
-std::size_t EnergyBound::nearest_way(const Node& node, const Vec& place) const {
-  const auto aside = [&](const Way& way) {
-    const Vec& to = changes_.place(base::at(way.to));
-    return (to[0] - place[0]) * (to[0] - place[0]) + (to[1] - place[1]) * (to[1] - place[1]);
-  };
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < node.way_count; ++i) {
-    best = aside(node.ways[i]) < aside(node.ways[best]) ? i : best;
-  }
-  return best;
-}
-
 /// What a module's load costs if it goes straight down, through a single file of modules.
 double EnergyBound::way_energy(std::size_t from) const {
   const Vec load = load_about_origin(target_, from, changes_.place(from));
   double energy = 0;
   for (std::size_t module = from; !has_root(module);) {
-    const Way& way = nodes_[module].ways.front();
+    const Way& way = nodes_[module].way;
     energy += changes_.energy_of(changes_.middle(load, module, way.direction));
     module = base::at(way.to);
   }
@@ -228,7 +204,7 @@ std::vector<LoadSpread::Load> EnergyBound::loads_beside(std::size_t module) cons
 bool EnergyBound::spread(std::size_t from) {
   std::vector<std::size_t> way = {from};
   while (!has_root(way.back())) {
-    way.push_back(base::at(nodes_[way.back()].ways.front().to));
+    way.push_back(base::at(nodes_[way.back()].way.to));
   }
   const std::vector<LoadSpread::Share> shares = spread_.spread(way, loads_beside(from), local_);
   if (shares.empty()) {
@@ -259,47 +235,22 @@ void EnergyBound::bear(const LoadSpread::Share& share) {
   }
 }
 
-/// Hands a module's load on to supports: through all ways down at once, which meet again below
-/// where they can, and so on.
+/// Hands a module's load on to a support.
 void EnergyBound::carry(std::size_t from) {
-  std::vector<std::pair<std::size_t, Vec>> parts = {
-      {from, load_about_origin(target_, from, changes_.place(from))}};
-  std::vector<std::pair<std::size_t, Vec>> next;
-  for (; !parts.empty(); std::swap(parts, next)) {
-    next.clear();
-    for (const auto& [module, load] : parts) {
-      const Node& node = nodes_[module];
-      if (section_ != nullptr && has_root(module)) {
-        base::add_to(borne_[base::at(section_place_[module])], load);
-        continue;
-      }
-      if (has_root(module)) {
-        const std::size_t facet = first_facet_[module];
-        if (facet < first_facet_[module + 1]) {
-          changes_.bear(
-              facet, changes_.middle(load, module, base::index(target_.facets()[facet].direction)));
-          look_at_facet(facet);
-        }
-        continue;
-      }
-      const bool is_split = parts.size() == 1;
-      const std::size_t begin = is_split ? 0 : nearest_way(node, changes_.place(from));
-      const std::size_t end = is_split ? node.way_count : begin + 1;
-      Vec share = load;
-      for (double& component : share) {
-        component /= static_cast<double>(end - begin);
-      }
-      for (std::size_t i = begin; i < end; ++i) {
-        const std::size_t to = base::at(node.ways[i].to);
-        changes_.hand_on(module, node.ways[i].direction, share);
-        const auto found = std::ranges::find(next, to, &std::pair<std::size_t, Vec>::first);
-        if (found == next.end()) {
-          next.emplace_back(to, share);
-        } else {
-          base::add_to(found->second, share);
-        }
-      }
-    }
+  const Vec load = load_about_origin(target_, from, changes_.place(from));
+  std::size_t module = from;
+  for (; !has_root(module); module = base::at(nodes_[module].way.to)) {
+    changes_.hand_on(module, nodes_[module].way.direction, load);
+  }
+  if (section_ != nullptr) {
+    base::add_to(borne_[base::at(section_place_[module])], load);
+    return;
+  }
+  const std::size_t facet = first_facet_[module];
+  if (facet < first_facet_[module + 1]) {
+    changes_.bear(facet,
+                  changes_.middle(load, module, base::index(target_.facets()[facet].direction)));
+    look_at_facet(facet);
   }
 }
 
@@ -428,8 +379,7 @@ void EnergyBound::hang_section() {
       const std::int32_t other = local_.neighbour(module, base::index(direction));
       if (other != model::Robot::kNoNeighbour && section_place_[base::at(other)] >= 0 &&
           base::at(section_place_[base::at(other)]) < i) {
-        nodes_[module].ways.front() = {.to = other, .direction = base::index(direction)};
-        nodes_[module].way_count = 1;
+        nodes_[module].way = {.to = other, .direction = base::index(direction)};
       }
     }
   }
@@ -626,7 +576,7 @@ void EnergyBound::bear_by_section() {
     const std::size_t module = section_->modules()[i];
     Node& node = nodes_[module];
     node.is_host = true;
-    if (node.way_count == 0) {
+    if (node.way.to < 0) {
       continue;  // The first, where nothing remains.
     }
     Vec minus = section_->share(i, resultant_);
@@ -634,7 +584,7 @@ void EnergyBound::bear_by_section() {
       value = -value;
     }
     base::add_to(rest[i], minus);
-    const Way& way = node.ways.front();
+    const Way& way = node.way;
     changes_.hand_on_only(module, way.direction, rest[i]);
     base::add_to(rest[base::at(section_place_[base::at(way.to)])], rest[i]);
   }

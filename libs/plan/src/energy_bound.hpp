@@ -103,9 +103,6 @@ class EnergyBound {
  private:
   using Vec = base::Vec6<double>;
 
-  /// So many ways down from a module at most.
-  static constexpr std::size_t kWayMax = 4;
-
   /// A beam to a module that is nearer to a support.
   struct Way {
     std::int32_t to = -1;
@@ -117,9 +114,8 @@ class EnergyBound {
     bool is_new = false;   ///< Attached since the robot was solved.
     bool is_host = false;  ///< A module has been attached beside it since.
     std::int32_t depth = 0;
-    std::size_t place = 0;            ///< If new: in new_.
-    std::array<Way, kWayMax> ways{};  ///< Towards the support, the parent first.
-    std::size_t way_count = 0;        ///< 0 at a support.
+    std::size_t place = 0;  ///< If new: in new_.
+    Way way;                ///< Towards the support; none at a support.
   };
 
   bool is_grown_to(const std::vector<Element>& elements) const;
@@ -141,7 +137,6 @@ class EnergyBound {
   bool spread(std::size_t from);
   void bear(const LoadSpread::Share& share);
   void carry(std::size_t from);
-  std::size_t nearest_way(const Node& node, const Vec& place) const;
   std::optional<double> add_above_section(std::size_t module);
   void move_with_section();
   void bear_by_section();
