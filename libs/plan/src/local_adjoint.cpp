@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <limits>
 
 #include "adjoint.hpp"
 #include "holdfast/base/lattice.hpp"
@@ -105,38 +104,23 @@ std::optional<solver::BlockLu> LocalAdjoints::equations(
     const Region& region, const std::vector<std::int16_t>& row) const {
   const auto count = static_cast<std::size_t>(
       std::ranges::count_if(row, [](std::int16_t each) { return each != Region::kNone; }));
-  std::vector<base::Mat6<double>> diagonal(count);
-  std::vector<solver::Edge> edges;
-  std::vector<const base::Mat6<double>*> coupling;
+  BeamEquations equations(blocks_, count);
   for (std::size_t i = 0; i < region.modules.size(); ++i) {
     if (row[i] == Region::kNone) {
       continue;
     }
     for (const base::Direction direction : base::directions(target_.lattice())) {
       const std::int16_t other = region.neighbour(i, base::index(direction));
-      if (other == Region::kNone) {
-        continue;
-      }
-      base::add_to(diagonal[at(row[i])], blocks_.block_11(direction));
-      if (row[at(other)] > row[i]) {
-        edges.push_back({.a = row[i], .b = row[at(other)]});
-        coupling.push_back(&blocks_.block_12(direction));
+      if (other != Region::kNone && (row[at(other)] == Region::kNone || row[at(other)] > row[i])) {
+        equations.add_beam(row[i], row[at(other)], direction);
       }
     }
     const std::size_t module = region.modules[i];
     for (std::size_t k = first_facet_[module]; k < first_facet_[module + 1]; ++k) {
-      base::add_to(diagonal[at(row[i])], blocks_.block_11(target_.facets()[k].direction));
+      equations.add_facet(at(row[i]), target_.facets()[k].direction);
     }
   }
-  solver::BlockLu equations(count, edges, std::numeric_limits<std::size_t>::max(),
-                            solver::Symmetry::kSymmetric);
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    equations.set_edge(i, *coupling[i]);
-  }
-  for (std::size_t i = 0; i < diagonal.size(); ++i) {
-    equations.set_diagonal(i, diagonal[i]);
-  }
-  return equations.factor() ? std::optional(std::move(equations)) : std::nullopt;
+  return equations.factor();
 }
 
 /// Of the first module, under loads on it.
