@@ -12,6 +12,7 @@
 
 #include "candidate_judge.hpp"
 #include "robot_symmetry.hpp"
+#include "severity.hpp"
 
 namespace holdfast::plan {
 namespace {
@@ -44,20 +45,6 @@ Candidate check_candidate(model::RobotSpec spec, const base::Cell& cell,
   return candidate;
 }
 
-int rank_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kSafe:
-      return 0;
-    case Verdict::kUndecided:
-      return 1;
-    case Verdict::kOverload:
-      return 2;
-    case Verdict::kUnstable:
-      break;
-  }
-  return 3;
-}
-
 /// What is compared, to nine digits behind the point: mirror images differ in rounding.
 double rounded(std::optional<double> value, double otherwise) {
   constexpr double kDigits = 1e9;
@@ -66,7 +53,7 @@ double rounded(std::optional<double> value, double otherwise) {
 
 auto key_of(const Candidate& candidate) {
   const Judgement& judgement = candidate.judgement;
-  return std::tuple(rank_of(judgement.verdict), rounded(judgement.load_ratio_max, 0),
+  return std::tuple(severity(judgement.verdict), rounded(judgement.load_ratio_max, 0),
                     -rounded(judgement.margin_mm, 0), candidate.cell);
 }
 

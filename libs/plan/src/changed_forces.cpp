@@ -160,13 +160,4 @@ void ChangedForces::weigh_facet(std::size_t index, const Vec& moved) {
   }
 }
 
-ChangedForces::Vec ChangedForces::change(std::size_t module, int direction) const {
-  const Vec& change = beams_[beam_from(module, direction)].change;
-  if (direction % 2 == 0) {
-    return change;
-  }
-  const Vec global = beam_.to_global(static_cast<Direction>(direction ^ 1), change);
-  return beam_.to_local(static_cast<Direction>(direction), opposite_of(global));
-}
-
 }  // namespace holdfast::plan

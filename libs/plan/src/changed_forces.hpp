@@ -68,29 +68,6 @@ class ChangedForces {
   /// Weighs all beams anew.
   void weigh_all();
 
-  /// Whether a beam, or a facet, bears more or was weighed since the last clear().
-  bool has_changed(std::size_t module, int direction) const {
-    return is_touched_[beam_from(module, direction)] != 0;
-  }
-
-  bool has_changed(std::size_t facet) const { return is_facet_touched_[facet] != 0; }
-
-  /// What a module hands on more to its neighbour in a direction.
-  Vec change(std::size_t module, int direction) const;
-
-  /// Calls `look` with every beam that bears more or was weighed: the end from which it has an even
-  /// direction, that direction, and half of what s and h w have changed by together.
-  template <class Look>
-  void for_each_beam(const Look& look) const {
-    for (const std::size_t beam : touched_) {
-      Vec half = beams_[beam].change;
-      for (std::size_t i = 0; i < 6; ++i) {
-        half[i] = (half[i] + beams_[beam].gap[i]) / 2;
-      }
-      look(beam / half_, static_cast<int>(2 * (beam % half_)), half);
-    }
-  }
-
   Vec facet_change(std::size_t facet) const { return facets_[facet].change; }
 
  private:

@@ -4,11 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <utility>
 
+#include "contact_path.hpp"
 #include "dense.hpp"
 #include "holdfast/solver/largest.hpp"
+#include "holdfast/solver/second_state.hpp"
 #include "holdfast/verdict/assessment.hpp"
 
 namespace holdfast::plan {
@@ -25,12 +26,7 @@ using solver::FacetState;
 constexpr std::size_t kChangedMax = 24;
 
 /// Steps over contact states; most robots settle in one or two.
-constexpr int kStepMax = 20;
-
-/// A foot that is not stuck and is pulled sideways by more than this share of what presses it, or
-/// pulls it, may have a second state: a check looks for it (solver/src/other_solutions.cpp, where
-/// the least that had one was 1.7).
-constexpr double kSlipRatio = 1;
+constexpr std::size_t kStepMax = 20;
 
 /// Columns of modules take no more than this.
 constexpr std::size_t kColumnBytesMax = std::size_t{256} << 20U;
@@ -99,26 +95,13 @@ class CoreResponse::Grown {
     if (!match() || !add_loads() || !add_beams()) {
       return std::nullopt;
     }
-    states_.assign(robot_.facets().size(), mechanics::kStuck);
-    std::set<std::vector<int>> seen;
-    for (int step = 0; step < kStepMax; ++step) {
-      if (!solve_for_states()) {
-        return std::nullopt;
-      }
-      std::vector<ContactState> next = prescribed();
-      if (next == states_) {
-        return is_doubtful() ? std::nullopt : std::optional(equilibrium());
-      }
-      std::vector<int> codes;
-      for (const ContactState& state : next) {
-        codes.push_back(state.code());
-      }
-      if (!seen.insert(codes).second) {
-        return std::nullopt;
-      }
-      states_ = std::move(next);
-    }
-    return std::nullopt;
+    const auto settled =
+        settled_states(ContactStates(robot_.facets().size(), mechanics::kStuck), kStepMax,
+                       [&](const ContactStates& states) {
+                         states_ = states;
+                         return solve_for_states() ? std::optional(prescribed()) : std::nullopt;
+                       });
+    return settled && !is_doubtful() ? std::optional(equilibrium()) : std::nullopt;
   }
 
  private:
@@ -389,8 +372,8 @@ class CoreResponse::Grown {
     }
   }
 
-  std::vector<ContactState> prescribed() const {
-    std::vector<ContactState> states;
+  ContactStates prescribed() const {
+    ContactStates states;
     for (std::size_t i = 0; i < states_.size(); ++i) {
       const FacetState facet = facet_state(i, states_[i]);
       states.push_back(whole_.system_->law().state_at(facet, displacement_[facet.module]));
@@ -402,8 +385,7 @@ class CoreResponse::Grown {
     for (std::size_t i = 0; i < states_.size(); ++i) {
       const FacetState facet = facet_state(i, states_[i]);
       const Vec force = whole_.system_->law().trial_force(facet, displacement_[facet.module]);
-      if (states_[i] != mechanics::kStuck &&
-          std::hypot(force[0], force[1]) > kSlipRatio * std::abs(force[2])) {
+      if (solver::may_have_second_state(states_[i], force)) {
         return true;
       }
     }
@@ -438,7 +420,7 @@ class CoreResponse::Grown {
   std::vector<std::pair<std::size_t, Vec>> loads_;  ///< By place in special_.
   std::vector<model::Connection> beams_;            ///< That end at a new module.
   std::vector<const Column*> columns_;              ///< By place; null of new modules.
-  std::vector<ContactState> states_;
+  ContactStates states_;
   Vecs displacement_;
   Vecs alternative_;
 };

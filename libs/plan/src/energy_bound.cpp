@@ -27,12 +27,6 @@ constexpr double kRatioMax = 1 - 1e-3;
 /// New modules above a section are brought into balance so many times there and back.
 constexpr int kSweepCount = 2;
 
-/// Where a load ratio is above this, a connection that statics alone decides is told from others.
-constexpr double kRatioHeavy = 0.3;
-
-/// What statics says of a connection may be off by that share, by rounding.
-constexpr double kRoundingOfStatics = 1e-9;
-
 /// A load that costs more than this share of what the load ratio leaves room for, if it goes down
 /// through a single file of modules, is spread: that takes up to a millisecond.
 constexpr double kSpreadShare = 0.1;
@@ -48,14 +42,13 @@ bool is_plain(const model::Robot& target) {
 
 }  // namespace
 
-EnergyBound::EnergyBound(const model::Robot& target, const LocalAdjoints& adjoints, bool spreads)
+EnergyBound::EnergyBound(const model::Robot& target, const LocalAdjoints& adjoints)
     : target_(target),
       adjoints_(adjoints),
       local_(target),
       beam_(model::beam_section(target.material()), target.lattice()),
       changes_(target),
       spread_(target),
-      spreads_(spreads),
       ratio_per_norm_(model::load_ratio_per_energy_norm(target)),
       first_facet_(model::facet_starts(target)),
       nodes_(target.modules().size()),
@@ -63,7 +56,6 @@ EnergyBound::EnergyBound(const model::Robot& target, const LocalAdjoints& adjoin
       room_(target.facets().size()),
       nearby_(target.facets().size()),
       watched_(target),
-      cuts_(target),
       sway_(target, changes_.stiffness()) {
   const Vec& h = changes_.stiffness();
   const double b = target.foot_half_width_mm();
@@ -83,16 +75,14 @@ bool EnergyBound::has_root(std::size_t module) const {
 /// How far a way down through this neighbour leads aside within two steps, squared, in mm^2.
 double EnergyBound::lean(std::size_t module, std::size_t neighbour) const {
   const Node& next = nodes_[neighbour];
-  const Vec& below =
-      changes_.place(next.way_count == 0 ? neighbour : base::at(next.ways.front().to));
+  const Vec& below = changes_.place(next.way.to < 0 ? neighbour : base::at(next.way.to));
   const double x = below[0] - changes_.place(module)[0];
   const double y = below[1] - changes_.place(module)[1];
   return x * x + y * y;
 }
 
-/// Finds the ways down: to neighbours that are nearest to a support. The first one is the parent:
-/// that through which the way leads down most nearly straight, as a weight that is carried aside
-/// costs much.
+/// Finds the way down: to one of the neighbours that are nearest to a support, that through which
+/// it leads down most nearly straight, as a weight that is carried aside costs much.
 void EnergyBound::hang(std::size_t module) {
   Node& node = nodes_[module];
   const int straight = base::index(base::down(target_.lattice()));
@@ -105,21 +95,12 @@ void EnergyBound::hang(std::size_t module) {
         nodes_[base::at(other)].depth > depth_min) {
       continue;
     }
-    if (nodes_[base::at(other)].depth < depth_min) {
-      depth_min = nodes_[base::at(other)].depth;
-      node.way_count = 0;
-    }
     const double aside = lean(module, base::at(other));
-    const bool is_best =
-        node.way_count == 0 || aside < lean_min || (aside == lean_min && d == straight);
-    if (node.way_count < kWayMax) {
-      node.ways[node.way_count++] = {.to = other, .direction = d};
-    } else if (is_best) {
-      node.ways.back() = {.to = other, .direction = d};
-    }
-    if (is_best) {
+    if (nodes_[base::at(other)].depth < depth_min || aside < lean_min ||
+        (aside == lean_min && d == straight)) {
+      depth_min = nodes_[base::at(other)].depth;
       lean_min = aside;
-      std::swap(node.ways.front(), node.ways[node.way_count - 1]);
+      node.way = {.to = other, .direction = d};
     }
   }
   node.depth = has_root(module) ? 0 : depth_min + 1;
@@ -185,25 +166,12 @@ void EnergyBound::look_at_facet(std::size_t index) {
                           (limit - std::abs(moved[4] + change[4] / 2)) / facet_per_norm_y_);
 }
 
-/// The way that leads nearest to below a place.
-std::size_t EnergyBound::nearest_way(const Node& node, const Vec& place) const {
-  const auto aside = [&](const Way& way) {
-    const Vec& to = changes_.place(base::at(way.to));
-    return (to[0] - place[0]) * (to[0] - place[0]) + (to[1] - place[1]) * (to[1] - place[1]);
-  };
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < node.way_count; ++i) {
-    best = aside(node.ways[i]) < aside(node.ways[best]) ? i : best;
-  }
-  return best;
-}
-
 /// What a module's load costs if it goes straight down, through a single file of modules.
 double EnergyBound::way_energy(std::size_t from) const {
   const Vec load = load_about_origin(target_, from, changes_.place(from));
   double energy = 0;
   for (std::size_t module = from; !has_root(module);) {
-    const Way& way = nodes_[module].ways.front();
+    const Way& way = nodes_[module].way;
     energy += changes_.energy_of(changes_.middle(load, module, way.direction));
     module = base::at(way.to);
   }
@@ -213,7 +181,7 @@ double EnergyBound::way_energy(std::size_t from) const {
 /// Whether a module's load, on a single file of modules, takes much of what there is room for.
 bool EnergyBound::is_far_aside(std::size_t module) const {
   const double norm_max = 2 * (kRatioMax - solved_ratio_) / ratio_per_norm_;
-  return spreads_ && way_energy(module) > kSpreadShare * norm_max * norm_max;
+  return way_energy(module) > kSpreadShare * norm_max * norm_max;
 }
 
 /// What a module's beams put on its neighbours, but for fixed ones.
@@ -236,7 +204,7 @@ std::vector<LoadSpread::Load> EnergyBound::loads_beside(std::size_t module) cons
 bool EnergyBound::spread(std::size_t from) {
   std::vector<std::size_t> way = {from};
   while (!has_root(way.back())) {
-    way.push_back(base::at(nodes_[way.back()].ways.front().to));
+    way.push_back(base::at(nodes_[way.back()].way.to));
   }
   const std::vector<LoadSpread::Share> shares = spread_.spread(way, loads_beside(from), local_);
   if (shares.empty()) {
@@ -267,47 +235,22 @@ void EnergyBound::bear(const LoadSpread::Share& share) {
   }
 }
 
-/// Hands a module's load on to supports: through all ways down at once, which meet again below
-/// where they can, and so on.
+/// Hands a module's load on to a support.
 void EnergyBound::carry(std::size_t from) {
-  std::vector<std::pair<std::size_t, Vec>> parts = {
-      {from, load_about_origin(target_, from, changes_.place(from))}};
-  std::vector<std::pair<std::size_t, Vec>> next;
-  for (; !parts.empty(); std::swap(parts, next)) {
-    next.clear();
-    for (const auto& [module, load] : parts) {
-      const Node& node = nodes_[module];
-      if (section_ != nullptr && has_root(module)) {
-        base::add_to(borne_[base::at(section_place_[module])], load);
-        continue;
-      }
-      if (has_root(module)) {
-        const std::size_t facet = first_facet_[module];
-        if (facet < first_facet_[module + 1]) {
-          changes_.bear(
-              facet, changes_.middle(load, module, base::index(target_.facets()[facet].direction)));
-          look_at_facet(facet);
-        }
-        continue;
-      }
-      const bool is_split = parts.size() == 1;
-      const std::size_t begin = is_split ? 0 : nearest_way(node, changes_.place(from));
-      const std::size_t end = is_split ? node.way_count : begin + 1;
-      Vec share = load;
-      for (double& component : share) {
-        component /= static_cast<double>(end - begin);
-      }
-      for (std::size_t i = begin; i < end; ++i) {
-        const std::size_t to = base::at(node.ways[i].to);
-        changes_.hand_on(module, node.ways[i].direction, share);
-        const auto found = std::ranges::find(next, to, &std::pair<std::size_t, Vec>::first);
-        if (found == next.end()) {
-          next.emplace_back(to, share);
-        } else {
-          base::add_to(found->second, share);
-        }
-      }
-    }
+  const Vec load = load_about_origin(target_, from, changes_.place(from));
+  std::size_t module = from;
+  for (; !has_root(module); module = base::at(nodes_[module].way.to)) {
+    changes_.hand_on(module, nodes_[module].way.direction, load);
+  }
+  if (section_ != nullptr) {
+    base::add_to(borne_[base::at(section_place_[module])], load);
+    return;
+  }
+  const std::size_t facet = first_facet_[module];
+  if (facet < first_facet_[module + 1]) {
+    changes_.bear(facet,
+                  changes_.middle(load, module, base::index(target_.facets()[facet].direction)));
+    look_at_facet(facet);
   }
 }
 
@@ -372,23 +315,7 @@ bool EnergyBound::begin(const std::vector<Element>& elements, const verdict::Ass
   }
   std::ranges::for_each(facets_, [&](std::size_t facet) { look_at_facet(facet); });
   watched_.begin(elements, u_);
-  find_cuts(elements);
   return true;
-}
-
-/// Tells what statics alone decides from the rest, where that bears less.
-void EnergyBound::find_cuts(const std::vector<Element>& elements) {
-  cuts_.clear();
-  if (section_ != nullptr || solved_ratio_ < kRatioHeavy) {
-    return;
-  }
-  cuts_.assign(elements);
-  const double others = cuts_.load_ratio_of_others(u_) + ratio_per_norm_ * solved_error_;
-  if (others < solved_ratio_) {
-    solved_ratio_ = others;
-  } else {
-    cuts_.clear();
-  }
 }
 
 /// Whether these modules are there and no others: then all of them hang already.
@@ -452,8 +379,7 @@ void EnergyBound::hang_section() {
       const std::int32_t other = local_.neighbour(module, base::index(direction));
       if (other != model::Robot::kNoNeighbour && section_place_[base::at(other)] >= 0 &&
           base::at(section_place_[base::at(other)]) < i) {
-        nodes_[module].ways.front() = {.to = other, .direction = base::index(direction)};
-        nodes_[module].way_count = 1;
+        nodes_[module].way = {.to = other, .direction = base::index(direction)};
       }
     }
   }
@@ -482,39 +408,6 @@ void EnergyBound::forget_changes() {
   section_ratio_ = 0;
 }
 
-/// The inner product of an adjoint's forces, for fz and two torques, with s - h w.
-std::array<double, 3> EnergyBound::product_with(const LocalAdjoint& nearby) const {
-  std::array<double, 3> sum{};
-  const auto add = [&](const Vec& change, const auto& force_of) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec force = force_of(k);
-      for (std::size_t i = 0; i < 6; ++i) {
-        sum[k] += force[i] * change[i] / changes_.stiffness()[i];
-      }
-    }
-  };
-  const auto& moved = nearby.forces->moved;
-  for (const LocalAdjoint::Beam& beam : nearby.forces->beams) {
-    const std::size_t module = nearby.region[base::at(beam.a)];
-    if (changes_.has_changed(module, beam.direction)) {
-      add(changes_.change(module, beam.direction), [&](std::size_t k) {
-        return beam_.middle_force(static_cast<base::Direction>(beam.direction),
-                                  moved[base::at(beam.a)][k], moved[base::at(beam.b)][k]);
-      });
-    }
-  }
-  for (std::size_t i = 0; i < nearby.region.size(); ++i) {
-    const std::size_t module = nearby.region[i];
-    for (std::size_t facet = first_facet_[module]; facet < first_facet_[module + 1]; ++facet) {
-      if (changes_.has_changed(facet)) {
-        add(changes_.facet_change(facet),
-            [&](std::size_t k) { return trial_force(target_.facets()[facet], moved[i][k]); });
-      }
-    }
-  }
-  return sum;
-}
-
 /// Whether a facet that was there when the robot was solved stays pressed all over, as far as the
 /// modules near it show, if |s - h w| / 2 is no more than `radius`.
 bool EnergyBound::is_pressed_nearby(std::size_t index, double radius) {
@@ -529,28 +422,16 @@ bool EnergyBound::is_pressed_nearby(std::size_t index, double radius) {
       return nodes_[module].is_there && !nodes_[module].is_new;
     });
   }
-  if (nearby->forces->moved.empty() ||
+  if (!nearby->gram ||
       std::ranges::any_of(nearby->patch, [&](std::size_t i) { return nodes_[i].is_host; })) {
     return false;
   }
-  // What all forces of changes are worth at most is no more than `radius` either, and needs no sum.
-  return holds_nearby(facet, *nearby, radius, std::nullopt) ||
-         holds_nearby(facet, *nearby, radius, product_with(*nearby));
-}
-
-/// The same if its adjoint has these products with s - h w, or any.
-bool EnergyBound::holds_nearby(const model::Facet& facet, const LocalAdjoint& nearby, double radius,
-                               const std::optional<std::array<double, 3>>& product) const {
   const Vec force = trial_force(facet, u_[base::at(facet.module)]);
   const double b = target_.foot_half_width_mm();
   const auto holds = [&](double torque, double mx, double my, double lack_per_norm) {
     const double slack = -force[2] * b - std::abs(torque) - lack_per_norm * solved_error_;
     return std::ranges::all_of(std::array{1.0, -1.0}, [&](double sign) {
-      const double off = nearby.forces->norm({b, sign * mx, sign * my}) * radius;
-      const auto shared = [&](const std::array<double, 3>& p) {
-        return std::abs(b * p[0] + sign * (mx * p[1] + my * p[2])) / 2;
-      };
-      return off + (product ? shared(*product) : off) < slack;
+      return 2 * radius * nearby->gram->norm({b, sign * mx, sign * my}) < slack;
     });
   };
   return holds(force[3], 1, 0, facet_per_norm_x_) && holds(force[4], 0, 1, facet_per_norm_y_);
@@ -583,23 +464,20 @@ double EnergyBound::strain_by_adjoint(std::size_t index) {
     return kUnknown;
   }
   const double b = target_.foot_half_width_mm();
-  const auto strain = [&](const std::optional<WatchedFacets::Answer>& known) {
-    double largest = known ? 0 : kUnknown;
-    const auto look = [&](double torque, double x, double y) {
-      const double slack = -known->force[0] * b - std::abs(torque);
-      for (const double sign : {1.0, -1.0}) {
-        const double error = known->error({b, sign * x, sign * y}, energy_error());
-        largest = error < slack ? std::max(largest, error / slack) : kUnknown;
-      }
-    };
-    if (known) {
-      look(known->force[1], 1, 0);
-      look(known->force[2], 0, 1);
+  const auto known = watched_.find(index, u_);
+  double largest = known ? 0 : kUnknown;
+  const auto look = [&](double torque, double x, double y) {
+    const double slack = -known->force[0] * b - std::abs(torque);
+    for (const double sign : {1.0, -1.0}) {
+      const double error = known->error({b, sign * x, sign * y}, energy_error());
+      largest = error < slack ? std::max(largest, error / slack) : kUnknown;
     }
-    return largest;
   };
-  const double by_core = strain(watched_.find(index, u_));
-  return by_core < kStrainMax ? by_core : std::min(by_core, strain(watched_.find_finer(index, u_)));
+  if (known) {
+    look(known->force[1], 1, 0);
+    look(known->force[2], 0, 1);
+  }
+  return largest;
 }
 
 std::map<std::size_t, int> EnergyBound::take_doubtful() { return std::exchange(doubtful_, {}); }
@@ -614,7 +492,6 @@ std::optional<double> EnergyBound::add(Element element) {
   node.is_there = true;
   node.is_new = true;
   node.place = new_.size();
-  cuts_.add(module);
   sway_.attach(module);
   if (section_ != nullptr) {
     return add_above_section(module);
@@ -699,7 +576,7 @@ void EnergyBound::bear_by_section() {
     const std::size_t module = section_->modules()[i];
     Node& node = nodes_[module];
     node.is_host = true;
-    if (node.way_count == 0) {
+    if (node.way.to < 0) {
       continue;  // The first, where nothing remains.
     }
     Vec minus = section_->share(i, resultant_);
@@ -707,7 +584,7 @@ void EnergyBound::bear_by_section() {
       value = -value;
     }
     base::add_to(rest[i], minus);
-    const Way& way = node.ways.front();
+    const Way& way = node.way;
     changes_.hand_on_only(module, way.direction, rest[i]);
     base::add_to(rest[base::at(section_place_[base::at(way.to)])], rest[i]);
   }
@@ -715,36 +592,11 @@ void EnergyBound::bear_by_section() {
   section_ratio_ = section_->load_ratio(resultant_);  // A beam may bear both.
 }
 
-/// The largest load ratio of (s + h w) / 2 in any beam where these have changed, but for cuts, if
-/// the displacements of the solved robot are exact.
-double EnergyBound::changed_ratio() const {
-  double largest = 0;
-  changes_.for_each_beam([&](std::size_t module, int direction, Vec half) {
-    const std::size_t other = base::at(target_.connected()[module][base::at(direction)]);
-    if (cuts_.contains(module, other)) {
-      return;
-    }
-    if (!nodes_[module].is_new && !nodes_[other].is_new) {
-      base::add_to(
-          half, beam_.middle_force(static_cast<base::Direction>(direction), u_[module], u_[other]));
-    }
-    if (ratio_per_norm_ * ratio_per_norm_ * changes_.energy_of(half) > largest * largest) {
-      largest = std::max(largest, connection_ratio(target_, module, other, direction, half));
-    }
-  });
-  return largest;
-}
-
-/// That of the largest load ratio, if every facet is pressed all over.
+/// A bound of the largest load ratio, if every facet is pressed all over.
 std::optional<double> EnergyBound::bound() {
   const double radius = energy_error() / 2;
-  const double off = ratio_per_norm_ * radius;
-  const double others = std::max(solved_ratio_, cuts_.released_ratio());
-  double ratio = others + changes_.load_ratio() + section_ratio_ + off;
-  if (!(ratio < kRatioMax) && section_ == nullptr && others + off < kRatioMax) {
-    ratio = std::max(others, changed_ratio() + ratio_per_norm_ * solved_error_) + off;
-  }
-  ratio = std::max(ratio, cuts_.load_ratio() * (1 + kRoundingOfStatics));
+  const double ratio =
+      solved_ratio_ + changes_.load_ratio() + section_ratio_ + ratio_per_norm_ * radius;
   if (!(ratio < kRatioMax) || !are_pressed(radius + solved_error_ / 2)) {
     return std::nullopt;
   }

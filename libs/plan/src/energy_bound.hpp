@@ -9,8 +9,8 @@
 #include <optional>
 #include <vector>
 
+#include "adjoint.hpp"
 #include "changed_forces.hpp"
-#include "cut_connections.hpp"
 #include "followed_robot.hpp"
 #include "holdfast/model/lattice_beam.hpp"
 #include "holdfast/model/robot.hpp"
@@ -18,11 +18,9 @@
 #include "holdfast/verdict/assessment.hpp"
 #include "holdfast/verdict/moved_mass.hpp"
 #include "load_spread.hpp"
-#include "local_adjoint.hpp"
 #include "local_balance.hpp"
 #include "section_response.hpp"
 #include "sway_bound.hpp"
-#include "watched_facets.hpp"
 
 namespace holdfast::plan {
 
@@ -45,22 +43,18 @@ namespace holdfast::plan {
 /// beams, and what these put on its neighbours goes down through all modules near instead
 /// (LoadSpread).
 ///
-/// Where c(solved) + c(change of s) / 2 is too much c((s + h w) / 2) is found itself, of every beam
-/// in which s or h w has changed.
-///
 /// The centre of mass moves as u says, give or take what |s - h w| leaves open (SwayBound).
 ///
 /// Facets for which that is too coarse are looked at by what is known of them from the modules
-/// around (LocalAdjoint) or, where somebody has found it, from the whole robot (FacetAdjoint).
+/// around (LocalAdjoint) or, where somebody has found it, from the whole robot (Adjoint).
 ///
 /// Above a section of a slender robot, ways end at the section's modules, and the core moves by its
 /// answer to the resultant there (SectionResponse): s and h w then change alike below. New modules
 /// are brought into balance on the core where it is now.
 class EnergyBound {
  public:
-  /// Keeps references to the whole robot and to what is known of its facets. In thin robots, where
-  /// few modules are near any way, `spreads` is better false.
-  EnergyBound(const model::Robot& target, const LocalAdjoints& adjoints, bool spreads = true);
+  /// Keeps references to the whole robot and to what is known of its facets.
+  EnergyBound(const model::Robot& target, const LocalAdjoints& adjoints);
 
   /// Begins with a solved robot, whose modules are `elements` of the target, in that order. False
   /// if nothing can be built on it: it is not safe, a facet tilts or is open, or the polygon does
@@ -84,7 +78,7 @@ class EnergyBound {
 
   /// From the next begin() on the forces of these facets are looked at with their adjoints, as long
   /// as modules are attached in the order in which these have grown.
-  void take_adjoints(const GrownAdjoints& adjoints) { watched_.take(adjoints); }
+  void take_adjoints(const Adjoints& adjoints) { watched_.take(adjoints); }
 
   /// Whether the adjoint of a facet has been asked for since it was taken.
   bool has_asked_for(std::size_t facet) const { return watched_.has_asked_for(facet); }
@@ -92,10 +86,6 @@ class EnergyBound {
   /// How often each facet has left a state without a bound, alone or with others, or nearly so by
   /// its adjoint, since this was asked last.
   std::map<std::size_t, int> take_doubtful();
-
-  /// Connections whose forces statics alone gives, as long as it does: where they bear more than
-  /// all others, their exact load ratios are a part of the bound. None are known else.
-  const CutConnections& cuts() const { return cuts_; }
 
   /// How far the displacements are off in the energy norm, at most.
   double energy_error() const {
@@ -113,9 +103,6 @@ class EnergyBound {
  private:
   using Vec = base::Vec6<double>;
 
-  /// So many ways down from a module at most.
-  static constexpr std::size_t kWayMax = 4;
-
   /// A beam to a module that is nearer to a support.
   struct Way {
     std::int32_t to = -1;
@@ -127,21 +114,18 @@ class EnergyBound {
     bool is_new = false;   ///< Attached since the robot was solved.
     bool is_host = false;  ///< A module has been attached beside it since.
     std::int32_t depth = 0;
-    std::size_t place = 0;            ///< If new: in new_.
-    std::array<Way, kWayMax> ways{};  ///< Towards the support, the parent first.
-    std::size_t way_count = 0;        ///< 0 at a support.
+    std::size_t place = 0;  ///< If new: in new_.
+    Way way;                ///< Towards the support; none at a support.
   };
 
   bool is_grown_to(const std::vector<Element>& elements) const;
   void hang_all(const std::vector<Element>& elements);
   void hang_section();
   void settle_new();
-  void find_cuts(const std::vector<Element>& elements);
   void forget_changes();
   void forget_nearby(const std::vector<Element>& elements);
   void forget_nearby(const std::vector<bool>& is_changed);
   std::optional<double> bound();
-  double changed_ratio() const;
   bool has_root(std::size_t module) const;
   double lean(std::size_t module, std::size_t neighbour) const;
   void hang(std::size_t module);
@@ -153,17 +137,13 @@ class EnergyBound {
   bool spread(std::size_t from);
   void bear(const LoadSpread::Share& share);
   void carry(std::size_t from);
-  std::size_t nearest_way(const Node& node, const Vec& place) const;
   std::optional<double> add_above_section(std::size_t module);
   void move_with_section();
   void bear_by_section();
   verdict::MovedMass moved_mass() const;
   void look_at_facet(std::size_t facet);
   Vec trial_force(const model::Facet& facet, const Vec& u) const;
-  std::array<double, 3> product_with(const LocalAdjoint& nearby) const;
   bool is_pressed_nearby(std::size_t facet, double radius);
-  bool holds_nearby(const model::Facet& facet, const LocalAdjoint& nearby, double radius,
-                    const std::optional<std::array<double, 3>>& product) const;
   bool are_pressed(double radius);
   double strain_by_adjoint(std::size_t facet);
 
@@ -173,7 +153,6 @@ class EnergyBound {
   model::LatticeBeam<double> beam_;
   ChangedForces changes_;
   LoadSpread spread_;
-  bool spreads_ = true;
   double ratio_per_norm_ = 0;
   double facet_per_norm_x_ = 0;  ///< How much a facet's lack may be off, by norm.
   double facet_per_norm_y_ = 0;
@@ -185,7 +164,6 @@ class EnergyBound {
   std::vector<double> room_;         ///< By facet of the target: what |s - h w| / 2 may be.
   std::vector<std::optional<LocalAdjoint>> nearby_;  ///< By facet, as far as asked for.
   WatchedFacets watched_;
-  CutConnections cuts_;
   SwayBound sway_;
   verdict::MovedMass moved_;             ///< By u_, of all modules that are there,
   verdict::MovedMass still_moved_;       ///< and when the robot was solved.

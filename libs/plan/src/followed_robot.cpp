@@ -97,8 +97,7 @@ FollowedRobot::FollowedRobot(const model::RobotSpec& spec, const model::Robot& t
   }
 }
 
-void FollowedRobot::begin(const ElementSet& state, const verdict::Assessment& solved,
-                          const CutConnections& cuts) {
+void FollowedRobot::begin(const ElementSet& state, const verdict::Assessment& solved) {
   core_ = state;
   elements_ = state.elements();
   local_.assign(elements_);
@@ -114,7 +113,6 @@ void FollowedRobot::begin(const ElementSet& state, const verdict::Assessment& so
     place_[at(elements_[i])] = static_cast<std::int32_t>(i);
     u_[at(elements_[i])] = solved.equilibrium.displacement[i];
   }
-  cuts_ = &cuts;
   core_error_ = verdict::kEnergyFactor * solved.equilibrium.energy_error;
   motion_error_ = 0;
   iteration_count_ = 0;
@@ -426,9 +424,6 @@ double FollowedRobot::energy_of(const Vec& a, const Vec& b) const {
 /// The larger of what is known and the load ratio of a connection by the displacements.
 double FollowedRobot::ratio_of(std::size_t module, std::size_t other, int direction,
                                double known) const {
-  if (cuts_->contains(module, other)) {
-    return known;
-  }
   const Vec force = beam_.middle_force(direction_of(direction), u_[module], u_[other]);
   double energy = 0;
   for (std::size_t i = 0; i < 6; ++i) {

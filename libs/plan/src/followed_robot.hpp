@@ -7,7 +7,6 @@
 #include <optional>
 #include <vector>
 
-#include "cut_connections.hpp"
 #include "following_worth.hpp"
 #include "holdfast/model/lattice_beam.hpp"
 #include "holdfast/model/robot.hpp"
@@ -42,17 +41,15 @@ class FollowedRobot {
 
   struct Result {
     double energy_error = 0;  ///< How far displacement() is off in the energy norm, at most.
-    double load_ratio = 0;    ///< No load ratio but those of cuts exceeds this.
+    double load_ratio = 0;    ///< None exceeds this.
     double moved = 0;  ///< How far the core has moved since begin(), in the energy norm, at most.
   };
 
   /// Keeps a reference to the robot, all modules of which are there in the end.
   FollowedRobot(const model::RobotSpec& spec, const model::Robot& target);
 
-  /// Takes a safe state, all of whose facets are stuck, as the core. Somebody else looks at `cuts`
-  /// of it, as long as there are any. Keeps a reference.
-  void begin(const ElementSet& state, const verdict::Assessment& solved,
-             const CutConnections& cuts);
+  /// Takes a safe state, all of whose facets are stuck, as the core.
+  void begin(const ElementSet& state, const verdict::Assessment& solved);
 
   /// Attaches a module, which must be beside one that is there, and not fixed.
   void add(Element module);
@@ -147,11 +144,10 @@ class FollowedRobot {
   std::size_t solved_count_ = 0;  ///< How many of them these are.
   std::vector<Loaded> loaded_;    ///< As most_loaded_first(); empty: not yet asked for.
   std::vector<Vec> u_;            ///< By module of the target.
-  std::vector<Vec> given_;   ///< By module of the core: loads beyond its own that it has taken.
-  std::vector<Vec> moved_;   ///< And how far it has moved by them, z.
-  std::vector<Vec> change_;  ///< The loads that it may take next,
-  std::vector<Vec> motion_;  ///< and how it would move by them.
-  const CutConnections* cuts_ = nullptr;
+  std::vector<Vec> given_;     ///< By module of the core: loads beyond its own that it has taken.
+  std::vector<Vec> moved_;     ///< And how far it has moved by them, z.
+  std::vector<Vec> change_;    ///< The loads that it may take next,
+  std::vector<Vec> motion_;    ///< and how it would move by them.
   double core_error_ = 0;      ///< In the energy norm, of the solution that it is taken from,
   double motion_error_ = 0;    ///< and of moved_; infinite if it is not known.
   double solution_error_ = 0;  ///< Of the last one for the core.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "dense.hpp"
+#include "holdfast/solver/second_state.hpp"
 #include "holdfast/verdict/rigid_body.hpp"
 
 namespace holdfast::plan {
@@ -427,8 +428,7 @@ Footing GrownContact::footing_of(const Site& site, const States& states, const S
   return footing;
 }
 
-/// As solver/src/other_solutions.cpp: a facet that is not stuck and is pulled sideways by more than
-/// it presses may have a second state. If it comes back at once when it is put there, it has not.
+/// If a facet that may have a second state comes back at once when it is put there, it has not.
 bool GrownContact::may_have_others(const Site& site, const States& states, const Step& step,
                                    const FacetInfluence& facets) const {
   for (std::size_t i = 0; i < states.size(); ++i) {
@@ -436,9 +436,7 @@ bool GrownContact::may_have_others(const Site& site, const States& states, const
     const FacetState facet = is_own ? own_facet({}) : influence_.facets()[i];
     const Vec& stiffness = influence_.law().ground().stiffness;
     const Vec trial = scaled(stiffness, step.motions[i]);
-    const bool is_doubtful =
-        std::hypot(trial[0], trial[1]) > (1 - kForceShare) * std::abs(trial[2]);
-    if (facet.is_bonded || states[i] == mechanics::kStuck || !is_doubtful) {
+    if (facet.is_bonded || !solver::may_have_second_state(states[i], trial, kForceShare)) {
       continue;
     }
     States other = states;
@@ -501,29 +499,21 @@ void GrownContact::look_at_own(const Site& site, const Vec& new_module, Footing&
 
 std::optional<Grown> GrownContact::settle(const Site& site, const FacetInfluence& facets) const {
   const std::size_t count = influence_.facets().size() + (site.is_on_floor ? 1 : 0);
-  States states(count);
-  std::vector<States> seen;
-  for (std::size_t i = 0; i < kStepCountMax; ++i) {
-    const NewNode& own = node(site, site.is_on_floor ? states.back() : mechanics::kStuck);
-    auto step = solve(site, own, &facets, states);
-    auto next = step ? next_states(*step) : std::nullopt;
-    if (!next) {
-      return std::nullopt;
-    }
-    if (*next == states) {
-      Footing footing = footing_of(site, states, *step);
-      footing.is_certain = footing.is_certain && !may_have_others(site, states, *step, facets);
-      Grown result = grown(site, own, *std::move(step), footing);
-      result.is_settled = true;
-      return result;
-    }
-    if (std::ranges::find(seen, *next) != seen.end()) {
-      return std::nullopt;
-    }
-    seen.push_back(*next);
-    states = *std::move(next);
+  const NewNode* own = nullptr;
+  std::optional<Step> step;
+  const auto states = settled_states(States(count), kStepCountMax, [&](const States& tried) {
+    own = &node(site, site.is_on_floor ? tried.back() : mechanics::kStuck);
+    step = solve(site, *own, &facets, tried);
+    return step ? next_states(*step) : std::nullopt;
+  });
+  if (!states) {
+    return std::nullopt;
   }
-  return std::nullopt;
+  Footing footing = footing_of(site, *states, *step);
+  footing.is_certain = footing.is_certain && !may_have_others(site, *states, *step, facets);
+  Grown result = grown(site, *own, *std::move(step), footing);
+  result.is_settled = true;
+  return result;
 }
 
 }  // namespace holdfast::plan

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "contact_path.hpp"
 #include "facet_influence.hpp"
 #include "holdfast/model/robot.hpp"
 #include "holdfast/solver/influence.hpp"
@@ -66,7 +67,7 @@ class GrownContact {
   std::optional<Grown> settle(const Site& site, const FacetInfluence& facets) const;
 
  private:
-  using States = std::vector<mechanics::ContactState>;
+  using States = ContactStates;
 
   /// Equilibrium for given states: t of every host, forces on yielding rows, w of every facet.
   struct Step {

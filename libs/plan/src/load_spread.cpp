@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <memory>
 
 #include "block_product.hpp"
@@ -102,31 +101,20 @@ void LoadSpread::find_beams(Part& part, const LocalBalance& there) const {
 /// The equations of all beams and facets; false if something hangs free.
 bool LoadSpread::factor(Part& part) const {
   const std::vector<std::size_t>& modules = part.modules;
-  std::vector<base::Mat6<double>> diagonal(modules.size());
-  std::vector<solver::Edge> edges;
-  std::vector<const base::Mat6<double>*> coupling;
+  BeamEquations equations(blocks_, modules.size());
   for (const Part::Beam& beam : part.beams) {
-    base::add_to(diagonal[at(beam.a)], blocks_.block_11(beam.direction));
-    if (beam.b >= 0) {
-      base::add_to(diagonal[at(beam.b)], blocks_.block_11(base::opposite(beam.direction)));
-      edges.push_back({beam.a, beam.b});
-      coupling.push_back(&blocks_.block_12(beam.direction));
-    }
+    equations.add_beam(beam.a, beam.b, beam.direction);
   }
   for (std::size_t i = 0; i < modules.size(); ++i) {
     for (std::size_t k = first_facet_[modules[i]]; k < first_facet_[modules[i] + 1]; ++k) {
-      base::add_to(diagonal[i], blocks_.block_11(target_->facets()[k].direction));
+      equations.add_facet(i, target_->facets()[k].direction);
     }
   }
-  part.factor = solver::BlockLu(modules.size(), edges, std::numeric_limits<std::size_t>::max(),
-                                solver::Symmetry::kSymmetric);
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    part.factor.set_edge(i, *coupling[i]);
+  auto factors = equations.factor();
+  if (factors) {
+    part.factor = *std::move(factors);
   }
-  for (std::size_t i = 0; i < modules.size(); ++i) {
-    part.factor.set_diagonal(i, diagonal[i]);
-  }
-  return part.factor.factor();
+  return factors.has_value();
 }
 
 void LoadSpread::forget_places(const std::vector<std::size_t>& modules) {

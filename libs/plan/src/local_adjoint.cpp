@@ -1,15 +1,9 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "local_adjoint.hpp"
-
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
-#include "block_product.hpp"
-#include "carried_force.hpp"
+#include "adjoint.hpp"
 #include "holdfast/base/lattice.hpp"
-#include "holdfast/mechanics/ground_contact.hpp"
 #include "holdfast/model/facet_starts.hpp"
 #include "holdfast/model/material.hpp"
 
@@ -26,6 +20,9 @@ using base::Vec6;
 /// 9,100 modules are solved instead of 4,122.
 constexpr std::size_t kPatchMax = 26;
 constexpr int kRadiusMax = 6;
+
+/// Of |z|^2, what rounding may take from |s|^2: some thousand times what it does.
+constexpr double kRounding = 1e-9;
 
 }  // namespace
 
@@ -51,21 +48,10 @@ struct LocalAdjoints::Region {
   }
 };
 
-double LocalAdjoint::Forces::norm(const std::array<double, 3>& factors) const {
-  double sum = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      sum += factors[i] * gram[3 * i + k] * factors[k];
-    }
-  }
-  return std::sqrt(std::max(0.0, sum));
-}
-
 LocalAdjoints::LocalAdjoints(const model::Robot& target)
     : target_(target),
       beam_(model::beam_section(target.material()), target.lattice()),
       blocks_(beam_, target.lattice()),
-      stiffness_(middle_stiffness(beam_)),
       first_facet_(model::facet_starts(target)) {}
 
 /// Modules in the order of their distance from the facet's, layers into the patch as long as they
@@ -118,143 +104,65 @@ std::optional<solver::BlockLu> LocalAdjoints::equations(
     const Region& region, const std::vector<std::int16_t>& row) const {
   const auto count = static_cast<std::size_t>(
       std::ranges::count_if(row, [](std::int16_t each) { return each != Region::kNone; }));
-  std::vector<base::Mat6<double>> diagonal(count);
-  std::vector<solver::Edge> edges;
-  std::vector<const base::Mat6<double>*> coupling;
+  BeamEquations equations(blocks_, count);
   for (std::size_t i = 0; i < region.modules.size(); ++i) {
     if (row[i] == Region::kNone) {
       continue;
     }
     for (const base::Direction direction : base::directions(target_.lattice())) {
       const std::int16_t other = region.neighbour(i, base::index(direction));
-      if (other == Region::kNone) {
-        continue;
-      }
-      base::add_to(diagonal[at(row[i])], blocks_.block_11(direction));
-      if (row[at(other)] > row[i]) {
-        edges.push_back({.a = row[i], .b = row[at(other)]});
-        coupling.push_back(&blocks_.block_12(direction));
+      if (other != Region::kNone && (row[at(other)] == Region::kNone || row[at(other)] > row[i])) {
+        equations.add_beam(row[i], row[at(other)], direction);
       }
     }
     const std::size_t module = region.modules[i];
     for (std::size_t k = first_facet_[module]; k < first_facet_[module + 1]; ++k) {
-      base::add_to(diagonal[at(row[i])], blocks_.block_11(target_.facets()[k].direction));
+      equations.add_facet(at(row[i]), target_.facets()[k].direction);
     }
   }
-  solver::BlockLu equations(count, edges, std::numeric_limits<std::size_t>::max(),
-                            solver::Symmetry::kSymmetric);
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    equations.set_edge(i, *coupling[i]);
-  }
-  for (std::size_t i = 0; i < diagonal.size(); ++i) {
-    equations.set_diagonal(i, diagonal[i]);
-  }
-  return equations.factor() ? std::optional(std::move(equations)) : std::nullopt;
+  return equations.factor();
 }
 
-/// Under fz, mx and my of the facet, by row.
-std::optional<std::vector<std::vector<Vec6<double>>>> LocalAdjoints::displacements(
-    const model::Facet& facet, const Region& region, const std::vector<std::int16_t>& row) const {
+/// Of the first module, under loads on it.
+std::optional<ThreeVectors> LocalAdjoints::displacements(
+    const ThreeVectors& loads, const Region& region, const std::vector<std::int16_t>& row) const {
   const auto factors = equations(region, row);
   if (!factors) {
     return std::nullopt;
   }
-  const auto law = mechanics::ground_facet<double>(beam_.stiffness(), target_.material().pitch_mm,
-                                                   2 * target_.foot_half_width_mm(), 0,
-                                                   mechanics::ContactLaw::kRegularised);
   std::vector<std::vector<Vec6<double>>> z(3, std::vector<Vec6<double>>(factors->node_count()));
-  for (int k = 0; k < 6; ++k) {
-    const Vec6<double> local = beam_.to_local(facet.direction, base::unit<double>(k));
-    const Vec6<double> force = mechanics::trial_force(law, local);
-    for (std::size_t component = 0; component < 3; ++component) {
-      z[component].front()[at(k)] = force[2 + component];
-    }
+  for (std::size_t component = 0; component < 3; ++component) {
+    z[component].front() = loads[component];
   }
   factors->solve_each(z);
-  return z;
+  return ThreeVectors{z[0].front(), z[1].front(), z[2].front()};
 }
 
-/// <s_i, s_k> of all beams and facets of the region.
-std::array<double, 9> LocalAdjoints::products(const Region& region,
-                                              const LocalAdjoint::Forces& forces) const {
-  std::array<double, 9> sum{};
-  std::array<Vec6<double>, 3> s{};
-  const auto add = [&] {
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        for (std::size_t c = 0; c < 6; ++c) {
-          sum[3 * i + k] += s[i][c] * s[k][c] / stiffness_[c];
-        }
-      }
-    }
-  };
-  for (const LocalAdjoint::Beam& beam : forces.beams) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      s[i] = beam_.middle_force(static_cast<base::Direction>(beam.direction),
-                                forces.moved[at(beam.a)][i], forces.moved[at(beam.b)][i]);
-    }
-    add();
-  }
-  for (std::size_t place = 0; place < region.modules.size(); ++place) {
-    const std::size_t module = region.modules[place];
-    for (std::size_t k = first_facet_[module]; k < first_facet_[module + 1]; ++k) {
-      const base::Direction direction = target_.facets()[k].direction;
-      for (std::size_t i = 0; i < 3; ++i) {
-        s[i] = force_in_middle(beam_, direction,
-                               block_product(blocks_.block_11(direction), forces.moved[place][i]),
-                               target_.material().pitch_mm);
-      }
-      add();
-    }
-  }
-  return sum;
-}
-
-LocalAdjoint::Forces LocalAdjoints::solve(const model::Facet& facet, const Region& region) const {
-  LocalAdjoint::Forces forces;
+/// <s_i, s_k> = q_i (y_k - z'_k), and what rounding may take from |s_i|^2.
+std::optional<Gram> LocalAdjoints::solve(const model::Facet& facet, const Region& region) const {
   std::vector<std::int16_t> row(region.modules.size(), Region::kNone);
   std::int16_t row_count = 0;
   for (std::size_t i = 0; i < row.size(); ++i) {
     row[i] = region.is_fixed[i] ? Region::kNone : row_count++;
   }
-  const auto open = displacements(facet, region, row);
-  const auto closed = displacements(facet, region, region.patch_place);
+  const ThreeVectors loads = facet_loads(target_, beam_, facet);
+  const auto open = displacements(loads, region, row);
+  const auto closed = displacements(loads, region, region.patch_place);
   if (!open || !closed) {
-    return forces;
+    return std::nullopt;
   }
-  forces.moved.resize(region.modules.size());
-  for (std::size_t i = 0; i < row.size(); ++i) {
-    for (std::size_t component = 0; component < 3; ++component) {
-      Vec6<double>& moved = forces.moved[i][component];
-      if (row[i] != Region::kNone) {
-        moved = (*open)[component][at(row[i])];
-      }
-      if (region.patch_place[i] != Region::kNone) {
-        base::add_times(moved, -1, (*closed)[component][at(region.patch_place[i])]);
-      }
+  Gram gram;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      gram.at(i, k) = base::dot(loads[i], (*open)[k]) - base::dot(loads[i], (*closed)[k]);
     }
-    for (int d = 0; d < static_cast<int>(region.direction_count); d += 2) {
-      if (region.neighbour(i, d) != Region::kNone) {
-        forces.beams.push_back({.a = static_cast<std::int16_t>(i),
-                                .b = region.neighbour(i, d),
-                                .direction = static_cast<std::int16_t>(d)});
-      }
-    }
+    gram.at(i, i) += kRounding * base::dot(loads[i], (*open)[i]);
   }
-  forces.gram = products(region, forces);
-  return forces;
+  return gram;
 }
 
-LocalAdjoint LocalAdjoints::find(const model::Facet& facet,
-                                 const std::function<bool(std::size_t)>& is_there) const {
-  const Region region = region_around(facet, is_there);
-  LocalAdjoint adjoint;
-  adjoint.region = region.modules;
-  for (std::size_t i = 0; i < region.modules.size(); ++i) {
-    if (region.patch_place[i] != Region::kNone) {
-      adjoint.patch.push_back(region.modules[i]);
-    }
-  }
+/// All that the gram depends on.
+std::string LocalAdjoints::key_of(const model::Facet& facet, const Region& region) const {
   std::string key = {static_cast<char>(base::index(facet.direction))};
   const auto append = [&](int number) {
     key.push_back(static_cast<char>(number & 0xff));
@@ -272,17 +180,30 @@ LocalAdjoint LocalAdjoints::find(const model::Facet& facet,
       append(region.neighbours[i * region.direction_count + d]);
     }
   }
+  return key;
+}
+
+LocalAdjoint LocalAdjoints::find(const model::Facet& facet,
+                                 const std::function<bool(std::size_t)>& is_there) const {
+  const Region region = region_around(facet, is_there);
+  LocalAdjoint adjoint;
+  for (std::size_t i = 0; i < region.modules.size(); ++i) {
+    if (region.patch_place[i] != Region::kNone) {
+      adjoint.patch.push_back(region.modules[i]);
+    }
+  }
+  std::string key = key_of(facet, region);
   {
     const std::lock_guard lock(mutex_);
     const auto found = known_.find(key);
     if (found != known_.end()) {
-      adjoint.forces = found->second;
+      adjoint.gram = found->second;
       return adjoint;
     }
   }
-  adjoint.forces = std::make_shared<const LocalAdjoint::Forces>(solve(facet, region));
+  adjoint.gram = solve(facet, region);
   const std::lock_guard lock(mutex_);
-  known_.emplace(std::move(key), adjoint.forces);
+  known_.emplace(std::move(key), adjoint.gram);
   return adjoint;
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 #include <span>
 
+#include "cut_vertices.hpp"
 #include "holdfast/plan/transition.hpp"
 #include "rolling.hpp"
 #include "way.hpp"
@@ -180,10 +181,7 @@ class MoveFinder {
     }
   }
 
-  /// To the neighbours, axial.
-  std::span<const Cell> steps() const {
-    return std::span(lattice_.steps).first(base::at(lattice_.direction_count));
-  }
+  std::span<const Cell> steps() const { return steps_of(lattice_); }
 
   bool add(const model::Move& move) {
     model::Step step;
@@ -207,93 +205,26 @@ class MoveFinder {
   std::set<Cell> arrivals_;  ///< Of moves without a named carrier.
 };
 
-/// Cut vertices of the graph of modules.
-class CutVertices {
- public:
-  explicit CutVertices(const RobotState& robot)
-      : robot_(robot), order_(robot.modules().size()), low_(order_.size()), is_cut_(order_.size()) {
-    const auto modules = robot.modules();
-    const auto root = std::ranges::find(modules, true, &ModuleState::is_there);
-    if (root != modules.end()) {
-      walk(static_cast<std::int32_t>(root - modules.begin()));
-    }
-  }
-
-  bool contains(std::size_t module) const { return is_cut_[module]; }
-
- private:
-  struct Visit {
-    std::int32_t module = 0;
-    std::int32_t parent = RobotState::kNone;
-    int direction = 0;  ///< The next to look in.
-    int child_count = 0;
-  };
-
-  void enter(std::int32_t module, std::int32_t parent) {
-    order_[base::at(module)] = low_[base::at(module)] = ++count_;
-    stack_.push_back({.module = module, .parent = parent});
-  }
-
-  void walk(std::int32_t root) {
-    enter(root, RobotState::kNone);
-    while (!stack_.empty()) {
-      Visit& visit = stack_.back();
-      if (visit.direction < robot_.lattice().direction_count) {
-        look(visit, static_cast<Direction>(visit.direction++));
-        continue;
-      }
-      const Visit done = visit;
-      stack_.pop_back();
-      if (stack_.empty()) {
-        is_cut_[base::at(done.module)] = done.child_count > 1;
-      } else {
-        leave(done);
-      }
-    }
-  }
-
-  void look(Visit& visit, Direction direction) {
-    const Cell& cell = robot_.module(visit.module).cell;
-    const Cell next = base::neighbour(robot_.lattice(), cell, direction);
-    const std::int32_t other = robot_.find(next);
-    if (other == RobotState::kNone || other == visit.parent || !robot_.are_connected(cell, next)) {
-      return;
-    }
-    std::int32_t& low = low_[base::at(visit.module)];
-    if (order_[base::at(other)] != 0) {
-      low = std::min(low, order_[base::at(other)]);
-    } else {
-      ++visit.child_count;
-      enter(other, visit.module);
-    }
-  }
-
-  void leave(const Visit& done) {
-    const Visit& parent = stack_.back();
-    std::int32_t& low = low_[base::at(parent.module)];
-    low = std::min(low, low_[base::at(done.module)]);
-    if (parent.parent != RobotState::kNone &&
-        low_[base::at(done.module)] >= order_[base::at(parent.module)]) {
-      is_cut_[base::at(parent.module)] = true;
-    }
-  }
-
-  const RobotState& robot_;
-  std::vector<std::int32_t> order_;  ///< By module; 0: not visited.
-  std::vector<std::int32_t> low_;
-  std::vector<bool> is_cut_;
-  std::vector<Visit> stack_;
-  std::int32_t count_ = 0;
-};
-
 }  // namespace
 
 std::vector<std::int32_t> loose_modules(const RobotState& robot) {
-  const CutVertices cuts(robot);
   std::vector<std::int32_t> loose;
   const auto modules = robot.modules();
+  const auto root = std::ranges::find(modules, true, &ModuleState::is_there);
+  if (root == modules.end()) {
+    return loose;
+  }
+  const std::vector<bool> is_cut = cut_vertices(
+      modules.size(), static_cast<std::int32_t>(root - modules.begin()),
+      base::at(robot.lattice().direction_count), [&](std::int32_t module, std::size_t direction) {
+        const Cell& cell = robot.module(module).cell;
+        const Cell next = base::neighbour(robot.lattice(), cell, static_cast<Direction>(direction));
+        const std::int32_t other = robot.find(next);
+        return other != RobotState::kNone && robot.are_connected(cell, next) ? other
+                                                                             : RobotState::kNone;
+      });
   for (std::size_t i = 0; i < modules.size(); ++i) {
-    if (modules[i].is_there && !modules[i].is_fixed && !cuts.contains(i)) {
+    if (modules[i].is_there && !modules[i].is_fixed && !is_cut[i]) {
       loose.push_back(static_cast<std::int32_t>(i));
     }
   }

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 
+#include "cut_vertices.hpp"
 #include "holdfast/base/rng.hpp"
 #include "holdfast/host/team.hpp"
 #include "holdfast/verdict/moved_mass.hpp"
@@ -76,10 +77,8 @@ RobotGrowth::RobotGrowth(const model::RobotSpec& spec, const model::Robot& targe
       rule_(rule),
       reach_(spec, rule),
       thread_count_(thread_count),
-      growing_(target),
       adjoints_(target),
-      bounds_(kPieceCountMax, EnergyBound(target, adjoints_, !growing_.is_thin())),
-      is_bonded_(std::ranges::all_of(target.facets(), &model::Facet::is_bonded)),
+      bounds_(kPieceCountMax, EnergyBound(target, adjoints_)),
       places_(places_in_layers(target, supports_and(target, core))),
       state_(spec.existing.size()),
       beside_count_(spec.existing.size()) {
@@ -156,62 +155,18 @@ void RobotGrowth::move_to(const ElementSet& state) {
   }
 }
 
-/// Modules without which the others would not hang together: cut vertices, by Tarjan's depth-first
-/// search without recursion.
-std::vector<bool> RobotGrowth::are_needed(const ElementSet& state) const {
-  struct Visit {
-    Element module;
-    Element parent;
-    std::size_t next = 0;
-  };
-
-  std::vector<bool> needed(element_count());
-  std::vector<std::int32_t> order(element_count(), -1);
-  std::vector<std::int32_t> low(element_count());
-  const Element root = state.elements().front();
-  std::vector<Visit> stack = {{.module = root, .parent = -1}};
-  std::int32_t visited = 0;
-  int root_child_count = 0;
-  order[base::at(root)] = low[base::at(root)] = visited++;
-  while (!stack.empty()) {
-    Visit& top = stack.back();
-    const auto neighbours = target_.connected()[base::at(top.module)];
-    std::int32_t& low_here = low[base::at(top.module)];
-    if (top.next < neighbours.size()) {
-      const std::int32_t other = neighbours[top.next++];
-      if (other == model::Robot::kNoNeighbour || !state.contains(other) || other == top.parent) {
-        continue;
-      }
-      if (order[base::at(other)] >= 0) {
-        low_here = std::min(low_here, order[base::at(other)]);
-        continue;
-      }
-      order[base::at(other)] = low[base::at(other)] = visited++;
-      root_child_count += top.module == root ? 1 : 0;
-      stack.push_back({.module = other, .parent = top.module});
-      continue;
-    }
-    const Visit done = top;
-    stack.pop_back();
-    if (done.parent >= 0) {
-      std::int32_t& low_parent = low[base::at(done.parent)];
-      low_parent = std::min(low_parent, low[base::at(done.module)]);
-      if (done.parent != root && low[base::at(done.module)] >= order[base::at(done.parent)]) {
-        needed[base::at(done.parent)] = true;
-      }
-    }
-  }
-  needed[base::at(root)] = root_child_count > 1;
-  return needed;
-}
-
 /// Modules that leave a connected robot with a support behind.
 std::vector<Element> RobotGrowth::removable(const ElementSet& state) const {
   std::vector<Element> list;
   if (state.size() < 2) {
     return list;
   }
-  const std::vector<bool> needed = are_needed(state);
+  const std::vector<bool> needed = cut_vertices(
+      element_count(), state.elements().front(), target_.connected()[0].size(),
+      [&](Element module, std::size_t direction) {
+        const std::int32_t other = target_.connected()[base::at(module)][direction];
+        return other != model::Robot::kNoNeighbour && state.contains(other) ? other : -1;
+      });
   const auto is_support = [&](Element element) {
     return target_.modules()[base::at(element)].support != model::Support::kNone;
   };
@@ -312,70 +267,7 @@ double RobotGrowth::room_mm(Balance& balance) const {
   return (balance.margin() - Balance::kMarginDoubt) * target_.material().pitch_mm;
 }
 
-/// By how far displacements of a state's modules move its centre of mass.
-double RobotGrowth::shift_mm(const ElementSet& state,
-                             const std::vector<base::Vec6<double>>& displacement) const {
-  verdict::MovedMass moved;
-  const std::vector<Element> elements = state.elements();
-  for (std::size_t i = 0; i < elements.size(); ++i) {
-    moved.add(target_.mass(base::at(elements[i])), displacement[i][0], displacement[i][1]);
-  }
-  return moved.shift_mm();
-}
-
-/// A state of modules that hang together, safe as the growing factorization shows.
-std::optional<verdict::Assessment> RobotGrowth::assess_by_factors(const ElementSet& state) {
-  if (!growing_.is_thin() || !(balance_ || is_bonded_)) {
-    return std::nullopt;
-  }
-  std::optional<double> margin_mm;
-  if (balance_) {
-    move_to(state);
-    margin_mm = balance_->margin() * target_.material().pitch_mm;
-    if (!(room_mm(*balance_) > 0)) {
-      return std::nullopt;
-    }
-  }
-  auto assessment = growing_.assess_safe(state);
-  if (assessment && balance_ &&
-      !(shift_mm(state, assessment->equilibrium.displacement) < room_mm(*balance_))) {
-    return std::nullopt;  // A check decides, and says so.
-  }
-  if (assessment) {
-    assessment->simplified.margin_mm = margin_mm;
-    assessment->stability_rule =
-        balance_ ? verdict::StabilityRule::kPolygon : verdict::StabilityRule::kHeld;
-  }
-  return assessment;
-}
-
-bool RobotGrowth::is_connected(const ElementSet& state) const {
-  std::vector<Element> reached;
-  std::vector<bool> is_reached(element_count());
-  const auto reach = [&](Element element) {
-    if (state.contains(element) && !is_reached[base::at(element)]) {
-      is_reached[base::at(element)] = true;
-      reached.push_back(element);
-    }
-  };
-  if (state.size() > 0) {
-    reach(state.elements().front());
-  }
-  for (std::size_t i = 0; i < reached.size(); ++i) {
-    for (const std::int32_t other : target_.connected()[base::at(reached[i])]) {
-      if (other != model::Robot::kNoNeighbour) {
-        reach(other);
-      }
-    }
-  }
-  return reached.size() == state.size();
-}
-
 Judgement RobotGrowth::judge(const ElementSet& state) {
-  const auto assessment = is_connected(state) ? assess_by_factors(state) : std::nullopt;
-  if (assessment) {
-    return judgement_of(*assessment);
-  }
   const auto part = robot(state);
   // A set of modules that is no robot, such as a start that is not connected, is not safe.
   return part ? plan::judge(part.value(), {.thread_count = thread_count_})
@@ -385,12 +277,6 @@ Judgement RobotGrowth::judge(const ElementSet& state) {
 std::vector<std::optional<Judgement>> RobotGrowth::judge_each(
     std::span<const ElementSet> states, const std::function<bool()>& is_late) {
   std::vector<std::optional<Judgement>> judgements(states.size());
-  if (growing_.is_thin()) {  // One state's factors become the next one's.
-    for (std::size_t i = 0; i < states.size() && !is_late(); ++i) {
-      judgements[i] = judge(states[i]);
-    }
-    return judgements;
-  }
   host::Team team(thread_count_);
   team.each(states.size(), [&](std::size_t i) {
     if (!is_late()) {
@@ -409,14 +295,14 @@ verdict::Assessment RobotGrowth::assess_alone(const ElementSet& state) const {
 /// A bound of the load ratio of the state that both tools have come to, by solutions that follow
 /// the robot; none if that, or how far the centre of mass moves, is too much.
 std::optional<double> RobotGrowth::bound_by_following(const Tools& tools, double room_mm) {
-  auto known = tools.followed->solve();
+  auto known = tools.followed.solve();
   for (int i = 0; known; ++i) {
-    const auto ratio = tools.bound.improve(tools.followed->displacement(), *known);
+    const auto ratio = tools.bound.improve(tools.followed.displacement(), *known);
     const bool is_certified = ratio && tools.bound.shift_mm() < room_mm;
     if (is_certified || i == kImprovementMax) {
       return is_certified ? ratio : std::nullopt;
     }
-    known = tools.followed->improve();
+    known = tools.followed.improve();
   }
   return std::nullopt;
 }
@@ -429,9 +315,7 @@ class RobotGrowth::Piece {
 
   ~Piece() {
     tools_.bound.end();
-    if (tools_.followed != nullptr) {
-      tools_.followed->end();
-    }
+    tools_.followed.end();
   }
 
   Piece(const Piece&) = delete;
@@ -495,9 +379,9 @@ std::optional<double> RobotGrowth::Piece::ratio(Element element) {
   if (!is_followed_) {
     return ratio;
   }
-  tools_.followed->add(element);
+  tools_.followed.add(element);
   if (ratio) {
-    tools_.followed->worth().certify(false);
+    tools_.followed.worth().certify(false);
     return ratio;
   }
   return followed_ratio(room_mm);
@@ -505,7 +389,7 @@ std::optional<double> RobotGrowth::Piece::ratio(Element element) {
 
 /// The same by solutions that follow the robot, where they can pay.
 std::optional<double> RobotGrowth::Piece::followed_ratio(double room_mm) {
-  FollowingWorth& worth = tools_.followed->worth();
+  FollowingWorth& worth = tools_.followed.worth();
   if (!(room_mm > 0) || !worth.can_pay()) {
     return std::nullopt;
   }
@@ -513,7 +397,7 @@ std::optional<double> RobotGrowth::Piece::followed_ratio(double room_mm) {
   if (ratio) {
     worth.certify(true);
   } else {
-    worth.end(tools_.followed->iteration_count());
+    worth.end(tools_.followed.iteration_count());
   }
   return ratio;
 }
@@ -523,16 +407,15 @@ void RobotGrowth::Piece::begin(const ElementSet& state, const verdict::Assessmen
   const bool is_decided_here =
       assessment.stability_rule != verdict::StabilityRule::kPolygon || balance_.has_value();
   const bool is_large = state.size() >= kFollowedMin;
-  const bool is_slender =
-      can_certify_ && is_large && tools_.section != nullptr && tools_.section->find(state);
-  const bool has_section = is_slender && left >= kSectionMin && tools_.section->solve();
+  const bool is_slender = can_certify_ && is_large && tools_.section.find(state);
+  const bool has_section = is_slender && left >= kSectionMin && tools_.section.solve();
   has_bound_ =
       can_certify_ && is_decided_here &&
-      tools_.bound.begin(state.elements(), assessment, has_section ? tools_.section : nullptr);
-  is_followed_ = has_bound_ && !is_slender && tools_.followed != nullptr && is_large &&
-                 tools_.followed->worth().begin(assessment.equilibrium.iteration_count);
+      tools_.bound.begin(state.elements(), assessment, has_section ? &tools_.section : nullptr);
+  is_followed_ = has_bound_ && !is_slender && is_large &&
+                 tools_.followed.worth().begin(assessment.equilibrium.iteration_count);
   if (is_followed_) {
-    tools_.followed->begin(state, assessment, tools_.bound.cuts());
+    tools_.followed.begin(state, assessment);
   }
 }
 
@@ -552,7 +435,7 @@ std::vector<Judgement> RobotGrowth::judge_piece(ElementSet state, Sense sense,
       judgements.push_back(*std::move(certified));
       continue;
     }
-    const verdict::Assessment assessment = tools.assess(state);
+    const verdict::Assessment assessment = assess_alone(state);
     judgements.push_back(judgement_of(assessment));
     if (!judgements.back().is_safe()) {
       break;
@@ -565,15 +448,8 @@ std::vector<Judgement> RobotGrowth::judge_piece(ElementSet state, Sense sense,
 std::vector<Judgement> RobotGrowth::judge_run(const ElementSet& state, Sense sense,
                                               std::span<const Element> run,
                                               const std::function<bool()>& is_late) {
-  if (run.size() == 1 || (growing_.is_thin() && sense == Sense::kShrinking)) {
+  if (run.size() == 1) {
     return GrowingStructure::judge_run(state, sense, run, is_late);
-  }
-  if (growing_.is_thin()) {
-    const Assess assess = [this](const ElementSet& next) {
-      const auto assessment = assess_by_factors(next);
-      return assessment ? *assessment : assess_alone(next);
-    };
-    return judge_piece(state, sense, run, {bounds_.front(), nullptr, nullptr, assess, is_late});
   }
   const std::size_t length = std::max(kPieceMin, (run.size() - 1) / kPieceCountMax + 1);
   const std::size_t count = (run.size() - 1) / length + 1;
@@ -584,7 +460,6 @@ std::vector<Judgement> RobotGrowth::judge_run(const ElementSet& state, Sense sen
   const auto part = [&](std::size_t i) {
     return run.subspan(i * length, std::min(length, run.size() - i * length));
   };
-  const Assess assess = [this](const ElementSet& next) { return assess_alone(next); };
   std::vector<std::vector<Judgement>> pieces(count);
   if (sense == Sense::kGrowing) {
     grow_adjoints(state, run);
@@ -595,8 +470,8 @@ std::vector<Judgement> RobotGrowth::judge_run(const ElementSet& state, Sense sen
   team.each(std::min(count, base::at(team.thread_count())), [&](std::size_t) {
     for (std::size_t turn = taken_count++; turn < count; turn = taken_count++) {
       const std::size_t i = count - 1 - turn;
-      pieces[i] = judge_piece(begins[i], sense, part(i),
-                              {bounds_[i], &followed_[i], &sections_[i], assess, is_late});
+      pieces[i] =
+          judge_piece(begins[i], sense, part(i), {bounds_[i], followed_[i], sections_[i], is_late});
     }
   });
   std::vector<Judgement> judgements;
@@ -642,7 +517,7 @@ void RobotGrowth::grow_adjoints(const ElementSet& state, std::span<const Element
   const std::vector<Element> elements = state.elements();
   host::Team team(thread_count_);
   team.each(facet_adjoints_.size(), [&](std::size_t i) {
-    GrownAdjoint& adjoint = *facet_adjoints_[i];
+    Adjoint& adjoint = *facet_adjoints_[i];
     if (adjoint.grow_to(elements)) {
       std::ranges::for_each(run, [&](Element element) { adjoint.grow(base::at(element)); });
     }
@@ -665,9 +540,8 @@ void RobotGrowth::renew_adjoints(const ElementSet& state, const std::function<bo
            });
   });
   if (!facets.empty()) {
-    for (const auto& core : find_adjoints(spec_, target_, state, facets, thread_count_, is_late)) {
-      facet_adjoints_.push_back(std::make_shared<GrownAdjoint>(target_, core));
-    }
+    std::ranges::move(find_adjoints(spec_, target_, state, facets, thread_count_, is_late),
+                      std::back_inserter(facet_adjoints_));
   }
   if (known_count + facet_adjoints_.size() > 0) {
     std::ranges::for_each(bounds_,

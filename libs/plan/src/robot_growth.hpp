@@ -14,7 +14,6 @@
 #include "energy_bound.hpp"
 #include "followed_robot.hpp"
 #include "holdfast/model/robot.hpp"
-#include "holdfast/plan/growing_robot.hpp"
 #include "holdfast/plan/order_search.hpp"
 #include "holdfast/plan/reach.hpp"
 #include "holdfast/solver/options.hpp"
@@ -46,7 +45,7 @@ class RobotGrowth final : public GrowingStructure {
   Judgement judge(const ElementSet& state) override;
 
   /// Growing, most states are certified by an EnergyBound instead of solved. What is solved is so
-  /// by factors that grow if the target is thin, else on all threads from nothing.
+  /// from nothing, by pieces of the run on all threads.
   std::vector<Judgement> judge_run(const ElementSet& state, Sense sense,
                                    std::span<const Element> run,
                                    const std::function<bool()>& is_late) override;
@@ -81,14 +80,11 @@ class RobotGrowth final : public GrowingStructure {
   /// What decides between candidates: lower first.
   using Rank = std::pair<LayerPlace, Element>;
 
-  using Assess = std::function<verdict::Assessment(const ElementSet&)>;
-
   /// What a piece of a run is judged with.
   struct Tools {
     EnergyBound& bound;
-    FollowedRobot* followed = nullptr;   ///< None where factors grow with the robot,
-    SectionResponse* section = nullptr;  ///< nor this.
-    const Assess& assess;
+    FollowedRobot& followed;
+    SectionResponse& section;
     const std::function<bool()>& is_late;
   };
 
@@ -100,12 +96,7 @@ class RobotGrowth final : public GrowingStructure {
   void add(Element element);
   void remove(Element element);
   double room_mm(Balance& balance) const;
-  double shift_mm(const ElementSet& state,
-                  const std::vector<base::Vec6<double>>& displacement) const;
-  std::optional<verdict::Assessment> assess_by_factors(const ElementSet& state);
   verdict::Assessment assess_alone(const ElementSet& state) const;
-  bool is_connected(const ElementSet& state) const;
-  std::vector<bool> are_needed(const ElementSet& state) const;
   std::vector<Element> removable(const ElementSet& state) const;
   std::vector<Element> reachable(std::vector<Element> list, const ElementSet& state,
                                  Sense sense) const;
@@ -123,13 +114,11 @@ class RobotGrowth final : public GrowingStructure {
   ReachRule rule_;
   ReachFinder reach_;
   int thread_count_;
-  GrowingRobot growing_;
   LocalAdjoints adjoints_;
   std::vector<EnergyBound> bounds_;        ///< By piece of a run.
-  GrownAdjoints facet_adjoints_;           ///< All of these know them.
+  Adjoints facet_adjoints_;                ///< All of these know them.
   std::vector<FollowedRobot> followed_;    ///< The same.
   std::vector<SectionResponse> sections_;  ///< The same.
-  bool is_bonded_;                         ///< All supports are, so that nothing topples.
   std::vector<LayerPlace> places_;         ///< By module, about the supports and the core.
   std::uint64_t seed_ = 0;
   // What follows the state that was asked for last.

@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "severity.hpp"
+
 namespace holdfast::plan {
 namespace {
 
@@ -18,21 +20,6 @@ constexpr std::size_t kCoreCountMax = 2000;
 
 /// A load ratio that is this near to 1 is left to a check, which has more digits.
 constexpr double kNearLimit = 1e-6;
-
-/// What is worse, the larger.
-int severity(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kSafe:
-      return 0;
-    case Verdict::kUndecided:
-      return 1;
-    case Verdict::kOverload:
-      return 2;
-    case Verdict::kUnstable:
-      break;
-  }
-  return 3;
-}
 
 /// Whether `b` is worse than `a`: by verdict, then by margin if they topple, else by load.
 bool is_worse(const Judgement& a, const Judgement& b) {

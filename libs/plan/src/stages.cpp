@@ -9,18 +9,14 @@
 #include <set>
 #include <string>
 
+#include "way.hpp"
+
 namespace holdfast::plan {
 namespace {
 
 using base::Cell;
 using model::text;
 using Pieces = std::vector<std::vector<std::int32_t>>;
-
-base::Error fault_in(Stage stage, const std::string& message) {
-  return {.code = base::ErrorCode::kBadInput,
-          .message = fmt::format("{}: {}", name(stage), message),
-          .where = {}};
-}
 
 /// Modules by index, as far as they are connected; each list ascending, lists by their first.
 /// Without the connections in `more`.

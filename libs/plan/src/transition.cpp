@@ -174,13 +174,13 @@ Fault find_arrival_fault(const RobotState& robot, const model::Step& step,
   return std::nullopt;
 }
 
+}  // namespace
+
 base::Error fault_in(Stage stage, const std::string& message) {
   return {.code = base::ErrorCode::kBadInput,
           .message = fmt::format("{}: {}", name(stage), message),
           .where = {}};
 }
-
-}  // namespace
 
 const char* name(Stage stage) {
   switch (stage) {

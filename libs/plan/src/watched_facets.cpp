@@ -1,10 +1,8 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "watched_facets.hpp"
-
 #include <algorithm>
-#include <utility>
 
+#include "adjoint.hpp"
 #include "carried_force.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/model/material.hpp"
@@ -16,7 +14,7 @@ using base::Direction;
 
 namespace {
 
-void add(GrownAdjoint::Triple& sum, const GrownAdjoint::Triple& more) {
+void add(Triple& sum, const Triple& more) {
   for (std::size_t i = 0; i < sum.size(); ++i) {
     sum[i] += more[i];
   }
@@ -29,7 +27,7 @@ WatchedFacets::WatchedFacets(const model::Robot& target)
       beam_(model::beam_section(target.material()), target.lattice()),
       there_(target) {}
 
-void WatchedFacets::take(const GrownAdjoints& adjoints) {
+void WatchedFacets::take(const Adjoints& adjoints) {
   watched_.clear();
   for (const auto& adjoint : adjoints) {
     watched_.push_back({.adjoint = adjoint});
@@ -58,7 +56,6 @@ void WatchedFacets::improve(double moved) {
   settled_count_ = attached_.size();
   for (Watched& watched : watched_) {
     watched.is_settled = false;
-    watched.finer.reset();
   }
 }
 
@@ -83,25 +80,11 @@ bool WatchedFacets::goes_on(Watched& watched, std::size_t attached) const {
   return !watched.is_void;
 }
 
-/// Null if it is not watched.
-WatchedFacets::Watched* WatchedFacets::find_watched(std::size_t facet) {
-  const auto found = std::ranges::find_if(
-      watched_, [&](const Watched& known) { return known.adjoint->facet() == facet; });
-  return found == watched_.end() ? nullptr : &*found;
-}
-
-WatchedFacets::Answer WatchedFacets::answer(const Watched& watched) const {
-  return {.adjoint = watched.adjoint.get(),
-          .count = watched.begin_count + watched.attached,
-          .still = watched.begin_count,
-          .moved = moved_,
-          .force = watched.force};
-}
-
 std::optional<WatchedFacets::Answer> WatchedFacets::find(std::size_t facet,
                                                          const std::vector<Vec>& u) {
-  Watched* const watched = find_watched(facet);
-  if (watched == nullptr) {
+  const auto watched = std::ranges::find_if(
+      watched_, [&](const Watched& known) { return known.adjoint->facet() == facet; });
+  if (watched == watched_.end()) {
     return std::nullopt;
   }
   watched->is_asked_for = true;
@@ -119,22 +102,14 @@ std::optional<WatchedFacets::Answer> WatchedFacets::find(std::size_t facet,
   while (watched->attached < attached_.size() && goes_on(*watched, watched->attached + 1)) {
     add(watched->force, share(watched->attached - 1, watched->attached));
   }
-  return watched->is_void ? std::nullopt : std::optional(answer(*watched));
-}
-
-std::optional<WatchedFacets::Answer> WatchedFacets::find_finer(std::size_t facet,
-                                                               const std::vector<Vec>& u) {
-  Watched* const watched = find_watched(facet);
-  if (watched == nullptr || watched->is_void || moved_ == 0) {
+  if (watched->is_void) {
     return std::nullopt;
   }
-  if (!watched->finer) {
-    watched->finer = watched->adjoint->share_of_moved(u, u_, watched->begin_count);
-  }
-  Answer finer = answer(*watched);
-  finer.is_fine = true;
-  add(finer.force, *watched->finer);
-  return finer;
+  return Answer{.adjoint = watched->adjoint.get(),
+                .count = watched->begin_count + watched->attached,
+                .still = watched->begin_count,
+                .moved = moved_,
+                .force = watched->force};
 }
 
 /// f - K u when the robot was solved, unless it is known.

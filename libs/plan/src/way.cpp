@@ -74,9 +74,8 @@ bool WayFinder::is_free(const Cell& cell, const Draft& draft) const {
 }
 
 bool WayFinder::is_step(const Cell& axial) const {
-  const base::Lattice& lattice = robot_.lattice();
-  const auto* const end = lattice.steps.begin() + lattice.direction_count;
-  return std::find(lattice.steps.begin(), end, axial) != end;
+  const std::span<const Cell> steps = steps_of(robot_.lattice());
+  return std::ranges::find(steps, axial) != steps.end();
 }
 
 bool WayFinder::touches(const Cell& carrier, const std::set<Cell>& cells) const {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "holdfast/plan/transition.hpp"
@@ -20,8 +21,16 @@ inline base::Cell sum(const base::Cell& a, const base::Cell& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
 
+/// To the neighbours of a cell, axial.
+inline std::span<const base::Cell> steps_of(const base::Lattice& lattice) {
+  return std::span(lattice.steps).first(base::at(lattice.direction_count));
+}
+
 /// Where a cell is after half of `doubled`, which is even, axial coordinates.
 base::Cell moved(const base::Lattice& lattice, const base::Cell& from, const base::Cell& doubled);
+
+/// What is wrong with a step, in one of its stages.
+base::Error fault_in(Stage stage, const std::string& message);
 
 /// Finds the ways of the groups of one step, see Group. Keeps references.
 class WayFinder {

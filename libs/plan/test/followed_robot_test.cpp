@@ -69,11 +69,10 @@ TEST(FollowedRobot, is_where_a_check_finds_it_within_its_error) {
       state.insert(order[i]);
     }
     FollowedRobot followed(spec, target);
-    const CutConnections no_cuts(target);
     const verdict::Assessment core =
         verdict::assess(model::Robot::create(part_of(spec, state)).value(), exact);
     ASSERT_EQ(core.verdict, verdict::Verdict::kSafe) << family;
-    followed.begin(state, core, no_cuts);
+    followed.begin(state, core);
     for (std::size_t i = core_count; i < order.size(); ++i) {
       state.insert(order[i]);
       followed.add(order[i]);

@@ -15,14 +15,11 @@
 #include <utility>
 #include <vector>
 
+#include "holdfast/solver/second_state.hpp"
 #include "regularised_contact.hpp"
 
 namespace holdfast::solver {
 namespace {
-
-/// Sideways force by pressure, or by the pull of the gap, from which on a facet is tried. The least
-/// that had another solution was 1.7.
-constexpr double kSlipRatio = 1;
 
 /// Where systems are iterated each costs a few iterations: no more than this are tried, lightest
 /// first.
@@ -67,7 +64,6 @@ std::vector<std::size_t> RegularisedContact::doubtful_facets(const std::vector<V
   std::vector<Doubt> doubts;
   for (std::size_t i = 0; i < system().facets().size(); ++i) {
     const FacetState& facet = system().facets()[i];
-    const bool is_stuck = facet.state == mechanics::kStuck;
     const Vec force = system().law().trial_force(facet, facets[i]);
     const Doubt doubt = {.facet = i,
                          .rank = here,
@@ -75,7 +71,7 @@ std::vector<std::size_t> RegularisedContact::doubtful_facets(const std::vector<V
                          .sideways_n = std::hypot(force[0], force[1])};
     const bool is_new =
         std::ranges::none_of(doubts, [&](const Doubt& other) { return is_alike(doubt, other); });
-    if (!is_stuck && doubt.sideways_n > kSlipRatio * doubt.upright_n && is_new) {
+    if (may_have_second_state(facet.state, force) && is_new) {
       doubts.push_back(doubt);
     }
   }

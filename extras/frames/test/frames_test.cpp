@@ -14,10 +14,10 @@
 #include <unordered_set>
 
 #include "frame_network.hpp"
-#include "holdfast/plan/network_structure.hpp"
+#include "holdfast/frames/network_structure.hpp"
 #include "seeds.hpp"
 
-namespace holdfast::plan {
+namespace holdfast::frames {
 namespace {
 
 constexpr double kLimit = 1.5;
@@ -118,12 +118,12 @@ TEST(PrintedFrames, have_no_order_if_a_closed_set_of_states_says_so) {
   EXPECT_LT(test::translation_max(whole(frame)), kEnough);
   const Order order = find_order(test::network_of(frame), translation_limit(kEnough));
   ASSERT_EQ(order.outcome, OrderOutcome::kNone);
-  const Closure& closure = order.closure.value();
+  const plan::Closure& closure = order.closure.value();
   ASSERT_FALSE(closure.states.empty());
   const Sense sense = closure.sense;
-  std::unordered_set<ElementSet, ElementSetHash> inside(closure.states.begin(),
-                                                        closure.states.end());
-  std::unordered_set<ElementSet, ElementSetHash> too_soft;
+  std::unordered_set<ElementSet, plan::ElementSetHash> inside(closure.states.begin(),
+                                                              closure.states.end());
+  std::unordered_set<ElementSet, plan::ElementSetHash> too_soft;
   for (const auto& [state, judgement] : closure.blocked) {
     too_soft.insert(state);
   }
@@ -155,4 +155,4 @@ TEST(PrintedFrames, have_no_order_if_a_closed_set_of_states_says_so) {
 }
 
 }  // namespace
-}  // namespace holdfast::plan
+}  // namespace holdfast::frames

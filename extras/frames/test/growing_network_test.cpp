@@ -3,7 +3,7 @@
 //
 // Random frames of bars that come and go, against frame_reference.hpp, which factorizes each set of
 // bars from nothing.
-#include "holdfast/plan/growing_network.hpp"
+#include "holdfast/frames/growing_network.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include "frame_network.hpp"
 #include "random_frame.hpp"
 
-namespace holdfast::plan {
+namespace holdfast::frames {
 namespace {
 
 using base::at;
@@ -118,4 +118,4 @@ TEST(GrowingNetwork, knows_what_hangs_on_nothing) {
 }
 
 }  // namespace
-}  // namespace holdfast::plan
+}  // namespace holdfast::frames

@@ -9,7 +9,7 @@
 #include "holdfast/base/algebra.hpp"
 #include "holdfast/solver/block_pattern.hpp"
 
-namespace holdfast::solver {
+namespace holdfast::frames {
 
 /// A symmetric term of rank six or less: what a spring between two nodes, or between a node and
 /// the ground, adds to a stiffness matrix.
@@ -39,7 +39,7 @@ struct LowRankTerm {
 class GrowingFactor {
  public:
   /// `edges`: the pairs of nodes that terms will couple; repeated ones do no harm.
-  GrowingFactor(std::size_t node_count, std::span<const Edge> edges);
+  GrowingFactor(std::size_t node_count, std::span<const solver::Edge> edges);
 
   /// Blocks below the diagonal of L with all terms, fill included.
   std::size_t lower_block_count() const { return pattern_.rows.size(); }
@@ -96,7 +96,7 @@ class GrowingFactor {
   void leave(std::size_t column);
   void make_column(std::size_t column);
 
-  BlockPattern pattern_;
+  solver::BlockPattern pattern_;
   std::vector<std::size_t> row_start_;         ///< into row_entries_
   std::vector<Entry> row_entries_;             ///< columns left of the diagonal that meet a row
   std::vector<std::int32_t> term_count_;       ///< terms that touch a place
@@ -111,4 +111,4 @@ class GrowingFactor {
   bool is_singular_ = false;
 };
 
-}  // namespace holdfast::solver
+}  // namespace holdfast::frames

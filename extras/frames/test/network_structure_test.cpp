@@ -3,7 +3,7 @@
 //
 // Orders of random frames: on small ones beside all orders there are, on larger ones with every
 // prefix solved from nothing by frame_reference.hpp.
-#include "holdfast/plan/network_structure.hpp"
+#include "holdfast/frames/network_structure.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 #include "random_frame.hpp"
 #include "seeds.hpp"
 
-namespace holdfast::plan {
+namespace holdfast::frames {
 namespace {
 
 using base::at;
@@ -70,7 +70,7 @@ TEST(NetworkOrder, is_found_if_and_only_if_there_is_one) {
       const double limit_mm = factor * by_mask.back();
       const Order order = find_order(network, translation_limit(limit_mm), {.seed = seed});
       ASSERT_EQ(order.outcome,
-                has_order(by_mask, limit_mm) ? OrderOutcome::kFound : OrderOutcome::kNone)
+                has_order(by_mask, limit_mm) ? OrderOutcome::kFound : plan::OrderOutcome::kNone)
           << "seed " << seed << " factor " << factor;
       std::size_t mask = 0;
       for (const std::int32_t bar : test::bars_of(order)) {
@@ -147,4 +147,4 @@ TEST(NetworkStructure, removes_only_what_holds_nothing_else) {
 }
 
 }  // namespace
-}  // namespace holdfast::plan
+}  // namespace holdfast::frames

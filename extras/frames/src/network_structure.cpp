@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "holdfast/plan/network_structure.hpp"
+#include "holdfast/frames/network_structure.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -12,7 +12,7 @@
 
 #include "holdfast/base/rng.hpp"
 
-namespace holdfast::plan {
+namespace holdfast::frames {
 namespace {
 
 using base::at;
@@ -60,7 +60,7 @@ void sort_by(std::vector<Element>& elements, Key&& key) {
 }
 
 /// What the lever of a spring says of its length.
-double arm_length(const solver::LowRankTerm& spring) {
+double arm_length(const LowRankTerm& spring) {
   // Rows of moments, columns of forces: minus the cross product with the arm.
   return std::hypot(spring.lever.at(5, 1), spring.lever.at(3, 2), spring.lever.at(4, 0));
 }
@@ -87,7 +87,7 @@ NetworkStructure::NetworkStructure(const SpringNetwork& network, Criterion crite
       touch_(network.node_count + 1) {
   const auto node = [&](std::int32_t end) { return end == kGround ? network.node_count : at(end); };
   for (std::size_t e = 0; e < network.elements.size(); ++e) {
-    const solver::LowRankTerm& spring = network.elements[e].spring;
+    const LowRankTerm& spring = network.elements[e].spring;
     ends_.push_back({node(spring.a), node(spring.b)});
     touch_[ends_[e].a].push_back(static_cast<Element>(e));
     touch_[ends_[e].b].push_back(static_cast<Element>(e));
@@ -345,4 +345,4 @@ Order find_order(const SpringNetwork& network, const Criterion& criterion,
   }
 }
 
-}  // namespace holdfast::plan
+}  // namespace holdfast::frames

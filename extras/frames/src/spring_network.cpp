@@ -1,16 +1,18 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "holdfast/plan/spring_network.hpp"
+#include "holdfast/frames/spring_network.hpp"
 
 #include <cmath>
 
 #include "vector3.hpp"
 
-namespace holdfast::plan {
+namespace holdfast::frames {
 namespace {
 
 using base::Mat6;
 using base::Vec6;
+using plan::cross;
+using plan::dot;
 
 /// Force and moment at the end of a bar along d whose other end is held.
 Vec6<double> end_force(const BarSection& s, double length, const Vector3& d,
@@ -69,4 +71,4 @@ LoadedSpring uniform_bar(const BarEnd& a, const BarEnd& b, const BarSection& sec
   return element;
 }
 
-}  // namespace holdfast::plan
+}  // namespace holdfast::frames

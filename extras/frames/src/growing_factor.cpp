@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "holdfast/solver/growing_factor.hpp"
+#include "holdfast/frames/growing_factor.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -9,11 +9,16 @@
 #include "block_kernels.hpp"
 #include "holdfast/base/check.hpp"
 
-namespace holdfast::solver {
+namespace holdfast::frames {
 namespace {
 
 using base::Mat6;
 using base::Vec6;
+using solver::invert;
+using solver::product;
+using solver::scaled;
+using solver::subtract_product;
+using solver::transpose;
 
 Mat6<double> identity() {
   return base::matrix_of<double>([](const Vec6<double>& x) { return x; });
@@ -64,8 +69,8 @@ bool is_positive(const Mat6<double>& block) {
 
 }  // namespace
 
-GrowingFactor::GrowingFactor(std::size_t node_count, std::span<const Edge> edges)
-    : pattern_(*block_pattern(node_count, edges, std::numeric_limits<std::size_t>::max())),
+GrowingFactor::GrowingFactor(std::size_t node_count, std::span<const solver::Edge> edges)
+    : pattern_(*solver::block_pattern(node_count, edges, std::numeric_limits<std::size_t>::max())),
       row_start_(node_count + 1, 0),
       row_entries_(pattern_.rows.size()),
       term_count_(node_count, 0),
@@ -358,4 +363,4 @@ void GrowingFactor::solve(std::span<Vec6<double>> x) const {
   }
 }
 
-}  // namespace holdfast::solver
+}  // namespace holdfast::frames

@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "holdfast/plan/spring_network.hpp"
-#include "holdfast/solver/growing_factor.hpp"
+#include "holdfast/frames/growing_factor.hpp"
+#include "holdfast/frames/spring_network.hpp"
 
-namespace holdfast::plan {
+namespace holdfast::frames {
 
 /// How much work a GrowingNetwork has done.
 struct GrowingWork {
@@ -77,7 +77,7 @@ class GrowingNetwork {
   bool refine();
 
   const SpringNetwork* network_;
-  solver::GrowingFactor factor_;
+  GrowingFactor factor_;
   std::vector<std::uint8_t> has_element_;
   std::vector<base::Vec6<double>> loads_;     ///< by node
   std::vector<base::Vec6<double>> solution_;  ///< by node
@@ -90,4 +90,4 @@ class GrowingNetwork {
   GrowingWork work_;
 };
 
-}  // namespace holdfast::plan
+}  // namespace holdfast::frames

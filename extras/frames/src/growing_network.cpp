@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "holdfast/plan/growing_network.hpp"
+#include "holdfast/frames/growing_network.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "holdfast/base/check.hpp"
 
-namespace holdfast::plan {
+namespace holdfast::frames {
 namespace {
 
 using base::at;
@@ -53,7 +53,7 @@ GrowingNetwork::GrowingNetwork(const SpringNetwork& network)
 }
 
 bool GrowingNetwork::can_be_added(std::size_t element) const {
-  const solver::LowRankTerm& spring = network_->elements[element].spring;
+  const LowRankTerm& spring = network_->elements[element].spring;
   return !has_element(element) && (has_node(spring.a) || has_node(spring.b));
 }
 
@@ -115,7 +115,7 @@ bool GrowingNetwork::assign(std::span<const std::size_t> elements) {
   element_count_ = 0;
   is_solved_ = false;
   last_sign_ = 0;
-  std::vector<const solver::LowRankTerm*> terms;
+  std::vector<const LowRankTerm*> terms;
   for (const std::size_t e : elements) {
     load(e, 1);
     if (!is_of_ground(network_->elements[e])) {
@@ -129,7 +129,7 @@ bool GrowingNetwork::assign(std::span<const std::size_t> elements) {
 double GrowingNetwork::make_residual(const std::vector<Vec6<double>>& u) {
   residual_ = loads_;
   for (std::size_t e = 0; e < has_element_.size(); ++e) {
-    const solver::LowRankTerm& spring = network_->elements[e].spring;
+    const LowRankTerm& spring = network_->elements[e].spring;
     if (!has_element(e) || spring.b == kGround) {
       continue;
     }
@@ -187,7 +187,7 @@ const std::vector<Vec6<double>>& GrowingNetwork::displacements() {
   }
   for (const bool is_anew : {false, true}) {
     if (is_anew) {
-      std::vector<const solver::LowRankTerm*> terms;
+      std::vector<const LowRankTerm*> terms;
       for (std::size_t e = 0; e < has_element_.size(); ++e) {
         if (has_element(e) && !is_of_ground(network_->elements[e])) {
           terms.push_back(&network_->elements[e].spring);
@@ -222,4 +222,4 @@ double GrowingNetwork::translation_max() {
   return std::sqrt(largest);
 }
 
-}  // namespace holdfast::plan
+}  // namespace holdfast::frames

@@ -2,18 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Bars under their weight and single springs by closed forms of beam theory.
-#include "holdfast/plan/spring_network.hpp"
+#include "holdfast/frames/spring_network.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "holdfast/plan/growing_network.hpp"
+#include "holdfast/frames/growing_network.hpp"
 
-namespace holdfast::plan {
+namespace holdfast::frames {
 namespace {
 
-constexpr double kTolerance = 1e-9;  // Of rounding; the forms are exact for slender beams.
+constexpr double kRoundingTolerance = 1e-9;  // Of rounding; the forms are exact for slender beams.
 constexpr double kLength = 70;
 constexpr double kWeight = 2e-4;
 const double kPi = std::acos(-1.0);
@@ -45,8 +45,10 @@ TEST(UniformBar, as_a_cantilever_sags_by_w_l4_over_8_ei_and_turns_by_w_l3_over_6
         .node_count = 1,
         .elements = {is_turned ? uniform_bar(tip, {}, s) : uniform_bar({}, tip, s)}};
     const auto u = whole(network);
-    EXPECT_NEAR(u[0][2] / (-kWeight * std::pow(kLength, 4) / (8 * bending())), 1, kTolerance);
-    EXPECT_NEAR(u[0][4] / (kWeight * std::pow(kLength, 3) / (6 * bending())), 1, kTolerance);
+    EXPECT_NEAR(u[0][2] / (-kWeight * std::pow(kLength, 4) / (8 * bending())), 1,
+                kRoundingTolerance);
+    EXPECT_NEAR(u[0][4] / (kWeight * std::pow(kLength, 3) / (6 * bending())), 1,
+                kRoundingTolerance);
   }
 }
 
@@ -57,7 +59,7 @@ TEST(UniformBar, that_hangs_grows_by_w_l2_over_2_ea) {
           uniform_bar({}, {.node = 0, .place_mm = {0, 0, -kLength}}, section({0, 0, -kWeight}))}};
   const double area = section({}).area_mm2;
   EXPECT_NEAR(whole(network)[0][2] / (-kWeight * kLength * kLength / (2 * 3500 * area)), 1,
-              kTolerance);
+              kRoundingTolerance);
 }
 
 TEST(UniformBar, twice_between_two_walls_sags_by_w_l4_over_384_ei_in_the_middle) {
@@ -74,7 +76,8 @@ TEST(UniformBar, twice_between_two_walls_sags_by_w_l4_over_384_ei_in_the_middle)
                    uniform_bar(middle, {.place_mm = place(2 * kLength)}, section(across))}};
   const auto u = whole(network);
   const double sag = std::hypot(u[0][0], u[0][1], u[0][2]);
-  EXPECT_NEAR(sag / (kWeight * std::pow(2 * kLength, 4) / (384 * bending())), 1, kTolerance);
+  EXPECT_NEAR(sag / (kWeight * std::pow(2 * kLength, 4) / (384 * bending())), 1,
+              kRoundingTolerance);
 }
 
 TEST(UniformBar, is_twisted_by_a_bar_across_its_end) {
@@ -84,8 +87,9 @@ TEST(UniformBar, is_twisted_by_a_bar_across_its_end) {
   const auto s = section({0, 0, -kWeight});
   const auto u =
       whole({.node_count = 2, .elements = {uniform_bar({}, tip, s), uniform_bar(tip, end, s)}});
-  EXPECT_NEAR(u[0][3] / (-kWeight * 30 * 30 / 2 * kLength / (2400 * s.torsion_mm4)), 1, kTolerance);
+  EXPECT_NEAR(u[0][3] / (-kWeight * 30 * 30 / 2 * kLength / (2400 * s.torsion_mm4)), 1,
+              kRoundingTolerance);
 }
 
 }  // namespace
-}  // namespace holdfast::plan
+}  // namespace holdfast::frames

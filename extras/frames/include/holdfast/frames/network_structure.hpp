@@ -6,10 +6,19 @@
 #include <span>
 #include <vector>
 
-#include "holdfast/plan/growing_network.hpp"
+#include "holdfast/frames/growing_network.hpp"
 #include "holdfast/plan/order_search.hpp"
 
-namespace holdfast::plan {
+namespace holdfast::frames {
+
+using plan::Element;
+using plan::ElementSet;
+using plan::GrowingStructure;
+using plan::Judgement;
+using plan::Order;
+using plan::OrderOptions;
+using plan::OrderOutcome;
+using plan::Sense;
 
 /// How far a network in equilibrium uses up what it may, from the displacements of its nodes: safe
 /// up to 1.
@@ -81,4 +90,4 @@ class NetworkStructure final : public GrowingStructure {
 Order find_order(const SpringNetwork& network, const Criterion& criterion,
                  const OrderOptions& options = {});
 
-}  // namespace holdfast::plan
+}  // namespace holdfast::frames

@@ -19,7 +19,7 @@
 #include <string>
 
 #include "frame_network.hpp"
-#include "holdfast/plan/network_structure.hpp"
+#include "holdfast/frames/network_structure.hpp"
 
 namespace {
 
@@ -99,8 +99,8 @@ void print_wholes(const std::vector<Named>& frames) {
   fmt::print("{:38} {:>5} {:>5} {:>12} {:>9}\n", "whole frame", "nodes", "bars", "moves mm",
              "differs");
   for (const auto& [name, frame] : frames) {
-    const plan::SpringNetwork network = test::network_of(frame);
-    plan::GrowingNetwork growing(network);
+    const frames::SpringNetwork network = test::network_of(frame);
+    frames::GrowingNetwork growing(network);
     std::vector<std::size_t> all(frame.bars.size());
     std::iota(all.begin(), all.end(), 0U);
     const double largest =
@@ -121,8 +121,8 @@ bool print_orders(const std::vector<Named>& frames, std::uint64_t seed, double s
   for (const auto& [name, frame] : frames) {
     const double begin = cpu_seconds();
     const plan::Order order =
-        plan::find_order(test::network_of(frame), plan::translation_limit(kLimit),
-                         {.seed = seed, .seconds_max = seconds_max});
+        frames::find_order(test::network_of(frame), frames::translation_limit(kLimit),
+                           {.seed = seed, .seconds_max = seconds_max});
     const double spent = cpu_seconds() - begin;
     fmt::print("{:38} {:5} {:7} {:8.3f} {:9.0f}  {}{}\n", name, frame.bars.size(),
                order.state_count, spent, static_cast<double>(order.state_count) / spent,
@@ -142,7 +142,7 @@ bool print_orders(const std::vector<Named>& frames, std::uint64_t seed, double s
 bool verify(const Named& named) {
   const auto& [name, frame] = named;
   const plan::Order order =
-      plan::find_order(test::network_of(frame), plan::translation_limit(kLimit));
+      frames::find_order(test::network_of(frame), frames::translation_limit(kLimit));
   if (order.outcome != plan::OrderOutcome::kFound) {
     fmt::print("{:38} {}\n", name, outcome(order));
     return !is_in_study(name);

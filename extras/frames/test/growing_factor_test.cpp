@@ -4,7 +4,7 @@
 // The factorization that follows its terms, against Eigen's dense Cholesky of their sum after every
 // change: random graphs, terms that come and go in random orders. Terms are symmetric and positive
 // within a factor of some hundred, so that both agree to 1e-9 with room to spare.
-#include "holdfast/solver/growing_factor.hpp"
+#include "holdfast/frames/growing_factor.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@
 #include "random_signed.hpp"
 #include "seeds.hpp"
 
-namespace holdfast::solver {
+namespace holdfast::frames {
 namespace {
 
 using base::Mat6;
@@ -65,8 +65,8 @@ std::vector<LowRankTerm> random_terms(base::Rng& rng, std::int32_t node_count, i
   return terms;
 }
 
-std::vector<Edge> edges(const std::vector<LowRankTerm>& terms) {
-  std::vector<Edge> list;
+std::vector<solver::Edge> edges(const std::vector<LowRankTerm>& terms) {
+  std::vector<solver::Edge> list;
   for (const LowRankTerm& term : terms) {
     if (term.a >= 0) {
       list.push_back({term.a, term.b});
@@ -254,4 +254,4 @@ TEST(GrowingFactor, of_a_chain_has_no_fill) {
 }
 
 }  // namespace
-}  // namespace holdfast::solver
+}  // namespace holdfast::frames

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "holdfast/base/algebra.hpp"
-#include "holdfast/solver/growing_factor.hpp"
+#include "holdfast/frames/growing_factor.hpp"
 
 /// What a planner builds or takes apart: nodes, springs between them, loads that come with the
 /// springs. Lattices of modules and printed frames are sources of it.
-namespace holdfast::plan {
+namespace holdfast::frames {
 
 using Vector3 = std::array<double, 3>;
 
@@ -22,7 +22,7 @@ inline constexpr std::int32_t kGround = -1;
 /// A spring and the loads on its two ends that are there as long as it is. An element whose both
 /// ends are the ground has no unknowns.
 struct LoadedSpring {
-  solver::LowRankTerm spring;
+  LowRankTerm spring;
   base::Vec6<double> load_a{};  ///< Of no effect where a is the ground.
   base::Vec6<double> load_b{};
 };
@@ -57,4 +57,4 @@ struct BarEnd {
 /// at b that hold its ends.
 LoadedSpring uniform_bar(const BarEnd& a, const BarEnd& b, const BarSection& section);
 
-}  // namespace holdfast::plan
+}  // namespace holdfast::frames
