@@ -99,14 +99,14 @@ TEST(ErrorKind, is_a_bound_just_where_balance_alone_gives_the_forces) {
 /// Where they say the same, by the same law and as far as promised, there is none; else the report
 /// knows why.
 TEST(Difference, is_named_wherever_robot_and_exact_solver_answer_otherwise) {
-  constexpr std::size_t kModulesMax = 6;  // Large ones with loops take long.
+  constexpr std::size_t kFewModules = 6;  // Large ones with loops take long.
   int count = 0;
   for (const base::Lattice& lattice : test::kLattices) {
     for (std::uint64_t seed = 0; seed < test::campaign(60U, 4U); ++seed) {
       SCOPED_TRACE(::testing::Message() << lattice.direction_count << " directions, seed " << seed);
       const model::RobotSpec spec = test::with_friction(test::general_robot(lattice, seed), seed);
       const auto robot = model::Robot::create(test::with_last_planned(spec, 1));
-      if (!robot || spec.existing.size() > kModulesMax) {
+      if (!robot || spec.existing.size() > kFewModules) {
         continue;
       }
       const Answers run = answers_of(robot.value());
