@@ -110,6 +110,19 @@ TEST(DistributedGeneral, a_robot_that_another_solution_breaks_is_not_safe) {
   EXPECT_EQ(comparison.robot, Verdict::kUndecided) << comparison.text();
 }
 
+/// Nine prisms at a bonded obstacle, of which the largest load ratio is 0.086 by one solution of
+/// the paper's law and 1.16 by another.
+TEST(DistributedGeneral, a_robot_that_hardly_bears_anything_by_one_solution_is_not_safe_by_it) {
+  const auto robot = test::robot_of(test::general_robot(base::kHexagonalPrism, 1147));
+  const verdict::Assessment exact = verdict::assess(robot);
+  ASSERT_TRUE(exact.several);
+  EXPECT_LT(exact.several->regularised.low, 0.1);
+  EXPECT_GT(exact.several->regularised.high, 1.1);
+  const test::Comparison comparison = test::compare(robot, {});
+  EXPECT_EQ(comparison.robot, Verdict::kUndecided) << comparison.text();
+  EXPECT_EQ(comparison.result.answer.reason, agent::Reason::kAmbiguousFeet);
+}
+
 /// The tower turned onto each side of a box, gravity with it: the same robot, the same verdict.
 TEST(DistributedGeneral, a_tower_stands_on_every_face_that_gravity_presses_on) {
   for (const base::Direction down : base::kDirections) {
@@ -134,8 +147,8 @@ TEST(DistributedGeneral, a_tower_stands_on_every_face_that_gravity_presses_on) {
 TEST(DistributedGeneral, random_robots_are_decided_like_the_exact_answer) {
   int count = 0;
   int undecided_alone = 0;
-  for (std::uint64_t seed = 0; seed < test::campaign(30U, 10U); ++seed) {
-    for (std::size_t planned = 0; planned < (seed < 10 ? 2 : 1); ++planned) {
+  for (std::uint64_t seed = 0; seed < test::campaign(18U, 6U); ++seed) {
+    for (std::size_t planned = 0; planned < (seed < 6 ? 2 : 1); ++planned) {
       SCOPED_TRACE(::testing::Message() << "general_robot " << seed << ", planned " << planned);
       const auto robot = model::Robot::create(
           test::with_last_planned(test::general_robot(base::kCubic, seed), planned));
@@ -152,7 +165,7 @@ TEST(DistributedGeneral, random_robots_are_decided_like_the_exact_answer) {
       EXPECT_LT(comparison.ratio_error(), 1) << comparison.text();
     }
   }
-  EXPECT_GT(count, test::campaign(35, 10));
+  EXPECT_GT(count, test::campaign(20, 10));
   EXPECT_LE(undecided_alone, 1);
 }
 
@@ -179,8 +192,8 @@ void expect_like_exact(const model::RobotSpec& spec, std::uint64_t seed, Counts&
 /// On floors and on walls.
 Counts compare_random_robots(const base::Lattice& lattice) {
   Counts counts;
-  for (std::uint64_t seed = 0; seed < test::campaign(12U, 6U); ++seed) {
-    for (std::size_t planned = 0; planned < (seed < test::campaign(6U, 6U) ? 3 : 1); ++planned) {
+  for (std::uint64_t seed = 0; seed < test::campaign(8U, 4U); ++seed) {
+    for (std::size_t planned = 0; planned < (seed < test::campaign(4U, 4U) ? 3 : 1); ++planned) {
       SCOPED_TRACE(::testing::Message() << "seed " << seed << ", planned " << planned);
       const model::RobotSpec spec = test::general_robot(lattice, seed);
       expect_like_exact(test::with_last_planned(spec, planned), seed, counts);
@@ -193,19 +206,19 @@ Counts compare_random_robots(const base::Lattice& lattice) {
 
 TEST(DistributedGeneral, random_robots_of_catoms_are_decided_like_the_exact_answer) {
   const Counts counts = compare_random_robots(base::kFaceCentred);
-  EXPECT_GT(counts.all, test::campaign(40, 6));
+  EXPECT_GT(counts.all, test::campaign(24, 6));
   EXPECT_LT(8 * counts.undecided, counts.all);
 }
 
 TEST(DistributedGeneral, random_robots_of_discs_are_decided_like_the_exact_answer) {
   const Counts counts = compare_random_robots(base::kHexagonal);
-  EXPECT_GT(counts.all, test::campaign(40, 6));
+  EXPECT_GT(counts.all, test::campaign(24, 6));
   EXPECT_LT(8 * counts.undecided, counts.all);
 }
 
 TEST(DistributedGeneral, random_robots_of_prisms_are_decided_like_the_exact_answer) {
   const Counts counts = compare_random_robots(base::kHexagonalPrism);
-  EXPECT_GT(counts.all, test::campaign(40, 6));
+  EXPECT_GT(counts.all, test::campaign(24, 6));
   EXPECT_LT(8 * counts.undecided, counts.all);
 }
 

@@ -326,7 +326,7 @@ TEST(Stages, random_steps_are_judged_as_by_the_exact_solver) {
 }
 
 TEST(Stages, of_cubes_that_are_held_anywhere_are_judged_as_by_the_exact_solver) {
-  compare_many(held_anywhere<0>, test::campaign(30U), 20, 1);
+  compare_many(held_anywhere<0>, test::campaign(12U), 20, 1);
 }
 
 TEST(Stages, of_catoms_in_space_that_are_held_anywhere_are_judged_as_by_the_exact_solver) {
@@ -334,11 +334,11 @@ TEST(Stages, of_catoms_in_space_that_are_held_anywhere_are_judged_as_by_the_exac
 }
 
 TEST(Stages, of_catoms_in_a_plane_that_are_held_anywhere_are_judged_as_by_the_exact_solver) {
-  compare_many(held_anywhere<2>, test::campaign(16U), 20, 1);
+  compare_many(held_anywhere<2>, test::campaign(8U), 20, 1);
 }
 
 TEST(Stages, of_prisms_that_are_held_anywhere_are_judged_as_by_the_exact_solver) {
-  compare_many(held_anywhere<3>, test::campaign(16U, 8U), 20, 1);
+  compare_many(held_anywhere<3>, test::campaign(8U), 20, 1);
 }
 
 TEST(Stages, of_cubes_with_masses_and_payloads_on_a_floor_are_judged_as_by_the_exact_solver) {
@@ -358,7 +358,7 @@ TEST(Stages, of_prisms_on_a_floor_are_judged_as_by_the_exact_solver) {
 }
 
 TEST(Stages, of_cubes_with_connector_laws_are_judged_as_by_the_exact_solver) {
-  compare_many(with_laws<0>, test::campaign(20U), 20, 1);
+  compare_many(with_laws<0>, test::campaign(10U), 20, 1);
 }
 
 TEST(Stages, of_catoms_in_space_with_connector_laws_are_judged_as_by_the_exact_solver) {
@@ -375,7 +375,7 @@ TEST(Stages, of_prisms_with_connector_laws_are_judged_as_by_the_exact_solver) {
 
 /// Forces found that balance within friction are a proof; others are none.
 TEST(Stages, of_cubes_that_may_slip_are_judged_as_by_the_exact_solver) {
-  compare_many(with_friction<0>, test::campaign(20U), 6, 1);
+  compare_many(with_friction<0>, test::campaign(10U), 6, 1);
 }
 
 TEST(Stages, of_catoms_in_space_that_may_slip_are_judged_as_by_the_exact_solver) {
@@ -383,7 +383,7 @@ TEST(Stages, of_catoms_in_space_that_may_slip_are_judged_as_by_the_exact_solver)
 }
 
 TEST(Stages, of_prisms_that_may_slip_are_judged_as_by_the_exact_solver) {
-  compare_many(with_friction<3>, test::campaign(10U), 6, 1);
+  compare_many(with_friction<3>, test::campaign(6U), 6, 1);
 }
 
 /// Of a foot of two, a column of two on it, and an arm of one, told these words; all modules agree.

@@ -457,18 +457,27 @@ Order Conductor::give_up(const Setup& setup) {
                 is_settled_but_close ? Reason::kTooClose : Reason::kNotConverged);
 }
 
+/// Those seen last are last. Where it is full the trials of one foot forget what was not seen for
+/// the longest time, so that states to which many trials come are kept.
 bool Conductor::was_seen(std::uint32_t hash) {
-  for (int i = 0; i < seen_count_; ++i) {
-    if (seen_[static_cast<std::size_t>(i)] == hash) {
+  std::uint8_t place = 0;
+  while (place < seen_count_ && seen_[place] != hash) {
+    ++place;
+  }
+  const bool is_new = place == seen_count_;
+  if (is_new && seen_count_ == kSeenMax) {
+    if (!is_by_one_foot()) {
       return true;
     }
+    place = 0;
+  } else if (is_new) {
+    ++seen_count_;
   }
-  if (seen_count_ == kSeenMax && !is_by_one_foot()) {
-    return true;
+  for (; place + 1U < seen_count_; ++place) {
+    seen_[place] = seen_[place + 1U];
   }
-  seen_count_ = static_cast<std::uint8_t>(seen_count_ % kSeenMax);
-  seen_[seen_count_++] = hash;
-  return false;
+  seen_[place] = hash;
+  return !is_new;
 }
 
 // ---- Conjugate gradients with one reduction an iteration [Chronopoulos, Gear 1989].

@@ -61,18 +61,6 @@ bool take_load_ratios(const model::Robot& robot, const Agents& agents,
   return !connections.empty();
 }
 
-/// A robot that finds no state under the regularised law answers by the unilateral one, also where
-/// the exact solver, which starts from other states, has found one.
-bool is_other_law(const verdict::Assessment& exact, const sim::SimulationResult& result) {
-  const bool has_law = exact.contact_model == verdict::ContactModel::kRegularised ||
-                       exact.contact_model == verdict::ContactModel::kUnilateral;
-  const bool is_unilateral = exact.contact_model == verdict::ContactModel::kUnilateral;
-  const bool has_ratio = result.answer.verdict == agent::Verdict::kSafe ||
-                         result.answer.verdict == agent::Verdict::kOverload;
-  return has_law && has_ratio && result.effort.solves > 0 &&
-         result.effort.is_unilateral != is_unilateral;
-}
-
 /// Whether a module that is told what is planned is taken off.
 bool are_plans_lost(const model::Robot& robot, const sim::SimulationOptions& options) {
   const auto is_told = [&](std::int32_t module) {
@@ -120,14 +108,17 @@ void note_idle_faults(const model::Robot& robot, const sim::SimulationOptions& o
   }
 }
 
+bool takes_off(const sim::SimulationOptions& options) {
+  return std::ranges::any_of(options.faults, [](const sim::Fault& fault) {
+    return fault.kind == sim::Fault::Kind::kDetach;
+  });
+}
+
 std::vector<std::string> notes_on(const model::Robot& robot, const sim::SimulationOptions& options,
                                   const verdict::Assessment& exact,
                                   const sim::SimulationResult& result) {
   std::vector<std::string> notes;
-  const bool changes = std::ranges::any_of(options.faults, [](const sim::Fault& fault) {
-    return fault.kind == sim::Fault::Kind::kDetach;
-  });
-  if (changes) {
+  if (takes_off(options)) {
     notes.emplace_back(
         "the exact answer is for the robot with the modules that were taken off, its own without "
         "them");
@@ -148,7 +139,7 @@ std::vector<std::string> notes_on(const model::Robot& robot, const sim::Simulati
         "the robot says that a facet's edge opens by more than gap_limit_mm: contacts of power and "
         "data part there");
   }
-  if (is_other_law(exact, result)) {
+  if (has_other_law(exact, result)) {
     notes.emplace_back(
         "the robot's load ratios are those of another contact law than the exact answer's: they "
         "are as near to their own law's as stated, not to the exact answer's");
@@ -268,6 +259,7 @@ DistributedRun describe_run(const model::Robot& robot, const CheckResult& exact,
                      .view = view_of(robot, exact.assessment, agents, result),
                      .notes = notes_on(robot, options, exact.assessment, result)};
   note_worst(robot, run);
+  note_difference(robot, exact.assessment, takes_off(options), run);
   return run;
 }
 

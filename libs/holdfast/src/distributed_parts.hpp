@@ -16,6 +16,14 @@ verdict::Assessment view_of(const model::Robot& robot, const verdict::Assessment
 /// Which connection the robot names, and its limit.
 void note_worst(const model::Robot& robot, DistributedRun& run);
 
+/// Whether the robot has load ratios of another contact law than the exact answer.
+bool has_other_law(const verdict::Assessment& exact, const sim::SimulationResult& result);
+
+/// What the robot's error is, and why it answers otherwise than the exact answer, of a run with
+/// result and view. `has_lost_modules`: modules were taken off.
+void note_difference(const model::Robot& robot, const verdict::Assessment& exact,
+                     bool has_lost_modules, DistributedRun& run);
+
 RefusedMessages refused_by(const model::Robot& robot, const Agents& agents);
 
 using TextOut = std::back_insert_iterator<std::string>;

@@ -131,6 +131,7 @@ void write_distributed(io::JsonStream& json, const DistributedRun& run) {
     json.member("limit", model::name(*run.worst_limit));
   }
   json.member("load_ratio_error", result.effort.ratio_error);
+  json.member("load_ratio_error_kind", name(run.error_kind));
   json.member("method", name(result.effort.method));
   json.member("contact_model", result.effort.is_unilateral ? "unilateral" : "regularised");
   json.member("rounds", result.rounds);
@@ -147,6 +148,7 @@ void write_distributed(io::JsonStream& json, const DistributedRun& run) {
   json.member("bytes_per_module", result.bytes_per_module);
   json.member("all_modules_agree", result.all_agree);
   json.member("epochs", result.epoch);
+  json.member("difference", name(run.difference));
   json.key("notes");
   json.begin_array();
   for (const std::string& note : run.notes) {

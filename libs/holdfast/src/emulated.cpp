@@ -80,6 +80,7 @@ base::Result<EmulatedRun> emulate(const Structure& structure, const CheckResult&
   run.run.refused = refused_by(structure.robot, agents);
   run.run.view = view_of(structure.robot, exact.assessment, agents, run.run.result);
   note_worst(structure.robot, run.run);
+  note_difference(structure.robot, exact.assessment, false, run.run);
   return run;
 }
 

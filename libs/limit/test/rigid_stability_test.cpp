@@ -6,11 +6,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
 #include "holdfast/base/algebra.hpp"
+#include "holdfast/base/rng.hpp"
 #include "seeds.hpp"
 
 namespace holdfast::limit {
@@ -33,6 +35,25 @@ BodyLoad weight_at(const Vector3& centre, double degrees = 0) {
   return {.weight_n = {10 * std::sin(degrees * kDegree), 0, -10 * std::cos(degrees * kDegree)},
           .centre_of_mass_mm = centre,
           .gyration_mm = 20};
+}
+
+double uniform(base::Rng& rng) { return static_cast<double>(rng.next() >> 11U) * 0x1p-53; }
+
+/// A rotation by a quaternion: its columns.
+std::array<Vector3, 3> random_frame(base::Rng& rng) {
+  std::array<double, 4> q{};
+  double square = 0;
+  for (double& value : q) {
+    value = 2 * uniform(rng) - 1;
+    square += value * value;
+  }
+  for (double& value : q) {
+    value /= std::sqrt(square);
+  }
+  const auto [w, x, y, z] = q;
+  return {{{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},
+           {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
+           {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}}};
 }
 
 TEST(RigidStability, AFloorHasTheTiltOfMarginAndHeight) {
@@ -88,6 +109,54 @@ TEST(RigidStability, OverTheEdgeThereIsNothingToSpare) {
   const RigidStability found = assess_rigid(facets, weight_at({20, 0, 40}));
   EXPECT_EQ(found.answer, RigidAnswer::kNothingToSpare);
   EXPECT_NEAR(*found.margin, 0, kMarginTie);
+}
+
+/// A block of any size, turned anyhow, whose centre of mass is s inside an edge of its facet, h
+/// above it: a push F at it along (x across the edge, z up) tips it from (W - F z) s = F x h on, a
+/// moment M about the edge from M = W s on. Just inside it holds, with that margin, and outside,
+/// however little, it does not.
+TEST(RigidStability, NextToAnEdgeTheMarginIsWhatStaticsSays) {
+  base::Rng rng(7);
+  const auto between = [&](double low, double high) {
+    return low * std::pow(high / low, uniform(rng));
+  };
+  int held_count = 0;
+  for (int i = 0; i < test::campaign(600); ++i) {
+    SCOPED_TRACE(i);
+    const double half_width = between(0.1, 1000);
+    const double height = half_width * between(0.1, 10);
+    const double gyration = half_width * between(0.3, 3);
+    const double side = i % 2 == 0 ? 1 : -1;
+    const double inside = side * half_width * between(1e-11, 0.1);
+    const std::array<Vector3, 3> frame = random_frame(rng);
+    const auto place = [&](double x, double z) {
+      Vector3 sum{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        sum[k] = x * frame[0][k] + z * frame[2][k];
+      }
+      return sum;
+    };
+    const ContactFacet facet = {.frame = frame,
+                                .half_width_mm = half_width,
+                                .friction = i % 3 == 0 ? std::optional(20.0) : std::nullopt};
+    const BodyLoad load = {.weight_n = place(0, -between(1e-3, 1e3)),
+                           .centre_of_mass_mm = place(half_width - inside, height),
+                           .gyration_mm = gyration};
+    double margin = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double tips = std::abs(frame[0][axis] * height + frame[2][axis] * inside);
+      margin = std::min({margin, inside / tips, inside / (std::abs(frame[1][axis]) * gyration)});
+    }
+    const RigidStability found = assess_rigid({{facet}}, load, false);
+    if (margin > 2 * kMarginTie) {
+      EXPECT_TRUE(found.holds());
+      EXPECT_NEAR(*found.margin, margin, kMarginTie + 1e-9 * margin);
+      ++held_count;
+    } else if (margin < kMarginTie / 2) {
+      EXPECT_FALSE(found.holds()) << margin;
+    }
+  }
+  EXPECT_GT(held_count, test::campaign(200));
 }
 
 TEST(RigidStability, ACeilingThatItOnlyTouchesHoldsNothing) {

@@ -255,6 +255,32 @@ TEST(DisplacedMass, over_the_edge_is_not_safe) {
   EXPECT_EQ(has_warning(stiff), 0);
 }
 
+/// Multigrid that may stop far from the end has the mass where the direct solver has it, within an
+/// error that its margin is less by; so whatever it may be off by, it is not safe beyond the edge.
+/// Of the leaning robot the margin without bending less what bending takes of it, which goes as
+/// 1 / E, is nothing at some E.
+TEST(DisplacedMass, is_over_its_polygon_by_more_than_the_solver_may_be_off) {
+  const Assessment soft = assess(model::Robot::create(leaning(1)).value());
+  const double margin = *soft.simplified.margin_mm;
+  const double edge = soft.lean->shift_mm / margin;
+  for (const double share : {-0.5, -1e-2, -1e-4, -1e-6, 1e-6, 1e-4, 1e-2, 0.5}) {
+    const model::Robot robot = model::Robot::create(leaning(edge * (1 + share))).value();
+    const Assessment direct = assess(robot, {.method = solver::Method::kDirect});
+    EXPECT_NEAR(direct.lean->margin_mm, margin * share / (1 + share), 1e-7) << share;
+    EXPECT_EQ(direct.verdict, share > 0 ? Verdict::kSafe : Verdict::kUndecided) << share;
+    for (const double tolerance : {1e-1, 1e-2, 1e-3, 1e-5, 1e-8}) {
+      const Assessment rough =
+          assess(robot, {.method = solver::Method::kMultigrid, .tolerance = tolerance});
+      ASSERT_TRUE(rough.lean) << tolerance;
+      EXPECT_LE(rough.lean->margin_mm, direct.lean->margin_mm) << share << " " << tolerance;
+      EXPECT_TRUE(share > 0 || rough.verdict != Verdict::kSafe) << share << " " << tolerance;
+    }
+    const Assessment fine =
+        assess(robot, {.method = solver::Method::kMultigrid, .tolerance = 1e-8});
+    EXPECT_TRUE(share < 1e-3 || fine.verdict == Verdict::kSafe) << share;
+  }
+}
+
 /// Of random robots that are made soft, none is safe whose displaced mass is outside its polygon.
 TEST(DisplacedMass, of_a_safe_robot_is_over_its_polygon) {
   int left_count = 0;

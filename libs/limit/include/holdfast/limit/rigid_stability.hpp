@@ -67,7 +67,7 @@ struct RigidStability {
   /// The largest share of the load that may be added as a force at the centre of mass along any
   /// axis, or, times `gyration_mm`, as a moment about any axis, before it moves; below 0: how far
   /// the load is from what contacts can balance, as a share of it. None: bonded, pressed from all
-  /// sides, or no load.
+  /// sides, or no load. Right within kMarginTie and 1e-8 of it, and above neither for what moves.
   std::optional<double> margin = {};
   /// The smallest coefficient with which it holds at all contact facets, at the best pressing,
   /// rounded up: with this one it holds, and one that is smaller by more than kFrictionAccuracy of

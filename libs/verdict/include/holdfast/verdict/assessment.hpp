@@ -62,7 +62,7 @@ struct OpenGaps {
 /// Where bending takes the centre of mass, in plan, by the displacements of the equilibrium.
 struct Lean {
   double shift_mm = 0;   ///< By how far it moves.
-  double margin_mm = 0;  ///< Its smallest distance to the line of an edge then, positive inside.
+  double margin_mm = 0;  ///< Its least distance to an edge's line then, inside, less its error.
 };
 
 /// Bending that takes more than this share of the margin is worth a warning.
