@@ -241,7 +241,7 @@ void add_texts(py::class_<CheckedStructure, std::shared_ptr<CheckedStructure>>& 
                  [&](std::ostream& out) { write_connections_csv(out, *c.structure, c.result); });
            })
       .def("certificate",
-           [](const CheckedStructure& c) { return take(certificate_text(c.result)); })
+           [](const CheckedStructure& c) { return take(certificate_text(*c.structure, c.result)); })
       .def("save", &save);
 }
 

@@ -97,9 +97,6 @@ std::string ending_of(std::string_view path) {
   return ending;
 }
 
-/// One command runs in a process.
-bool takes_standard_output = false;
-
 struct Entry {
   Output output;
   Identity identity;
@@ -113,8 +110,7 @@ bool clash(const Entry& a, const Entry& b) {
 
 }  // namespace
 
-std::optional<std::string> find_clash(std::span<const std::string> inputs,
-                                      std::initializer_list<Output> outputs) {
+std::optional<std::string> find_clash(std::span<const std::string> inputs, const Outputs& outputs) {
   std::vector<Entry> entries;
   for (const Output& output : outputs) {
     if (!output.path.empty()) {
@@ -147,7 +143,7 @@ std::optional<std::string> find_clash(std::span<const std::string> inputs,
   return std::nullopt;
 }
 
-std::optional<std::string> find_foreign_ending(std::initializer_list<Output> outputs) {
+std::optional<std::string> find_foreign_ending(const Outputs& outputs) {
   for (const Output& output : outputs) {
     const std::string ending = ending_of(output.path);
     const auto own = std::ranges::find(kFormats, output.option, &Format::option);
@@ -165,8 +161,7 @@ std::optional<std::string> find_foreign_ending(std::initializer_list<Output> out
   return std::nullopt;
 }
 
-bool complain_of_outputs(std::span<const std::string> inputs,
-                         std::initializer_list<Output> outputs) {
+bool complain_of_outputs(std::span<const std::string> inputs, const Outputs& outputs) {
   auto fault = find_clash(inputs, outputs);
   if (!fault) {
     fault = find_foreign_ending(outputs);
@@ -174,11 +169,12 @@ bool complain_of_outputs(std::span<const std::string> inputs,
   if (fault) {
     fmt::print(stderr, "holdfast: {}\n", io::one_line(*fault));
   }
-  takes_standard_output = std::ranges::any_of(
-      outputs, [](const Output& output) { return is_standard_output(output.path); });
   return fault.has_value();
 }
 
-bool leaves_standard_output() { return !takes_standard_output; }
+bool leaves_standard_output(const Outputs& outputs) {
+  return std::ranges::none_of(outputs,
+                              [](const Output& output) { return is_standard_output(output.path); });
+}
 
 }  // namespace holdfast::cli
