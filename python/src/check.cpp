@@ -197,6 +197,7 @@ std::string text_of(const Write& write) {
 /// Writes a file, whole or not at all.
 void save(const CheckedStructure& check, const py::handle& given, const std::string& kind) {
   const std::string path = path_of(given);
+  expect_ending(path, kind);
   const auto error = without_gil([&] {
     return write_file(path, [&](std::ostream& out) {
       if (kind == "json") {

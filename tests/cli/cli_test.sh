@@ -482,6 +482,22 @@ for arguments in "check $safe --svg a.png" "check $safe --vtk a.vtk" "check $saf
   expect_line err 'what is written is '
 done
 expect_exit 0 check "$safe" --svg a.picture --json plain
+expect_exit 64 generate cube 3 -o a.png
+expect_exit 64 check "$safe" --vtk a.pvd
+expect_line err "what is written is VTK's XML format, whose files end in .vtu"
+
+# Whoever finds modules that are not connected says which lattice connects them.
+printf '%s' '{"format": "holdfast-structure", "version": 1,
+  "modules": [[2,2,0], [1,1,1]]' | tee catoms_alone.json >catoms_and_one.json
+echo '}' >>catoms_alone.json
+echo ', "planned": [[2,2,2]]}' >>catoms_and_one.json
+for arguments in "check catoms_and_one.json" "steps catoms_and_one.json" "next catoms_alone.json" \
+  "simulate catoms_alone.json" "order catoms_and_one.json" "view catoms_alone.json" \
+  "move catoms_alone.json catoms_alone.json"; do
+  # shellcheck disable=SC2086
+  expect_exit 65 $arguments
+  expect_line err 'not connected: .*; the lattice is cubic, in face-centred it is connected'
+done
 
 # A full disk and a closed output are errors of every command.
 for arguments in "check $safe" "check $safe --json -" "simulate $safe --link unit" \

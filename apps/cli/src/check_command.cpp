@@ -35,8 +35,9 @@ struct CheckArguments {
 
   /// Of files, each with its option.
   Outputs outputs() const {
-    return {{"--json", json}, {"--csv", csv},   {"--svg", svg},
-            {"--vtk", vtk},   {"--html", html}, {"--certificate", certificate}};
+    return {{"--json", json, FileFormat::kJson}, {"--csv", csv, FileFormat::kCsv},
+            {"--svg", svg, FileFormat::kSvg},    {"--vtk", vtk, FileFormat::kVtu},
+            {"--html", html, FileFormat::kHtml}, {"--certificate", certificate}};
   }
 };
 

@@ -39,7 +39,9 @@ struct EmulateArguments {
   bool is_quiet = false;
 
   /// Of files, each with its option.
-  Outputs outputs() const { return {{"--json", json}, {"--svg", svg}}; }
+  Outputs outputs() const {
+    return {{"--json", json, FileFormat::kJson}, {"--svg", svg, FileFormat::kSvg}};
+  }
 };
 
 /// What ./dev firmware has built, or what was installed; if neither is there, where the first would

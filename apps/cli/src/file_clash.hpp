@@ -8,12 +8,15 @@
 #include <string_view>
 #include <vector>
 
+#include "holdfast/file_ending.hpp"
+
 /// Files that would overwrite each other.
 namespace holdfast::cli {
 
 struct Output {
-  std::string_view option;  ///< As it is called on the command line.
-  std::string_view path;    ///< "-" is standard output; empty if there is none.
+  std::string_view option;                ///< As it is called on the command line.
+  std::string_view path;                  ///< "-" is standard output; empty if there is none.
+  std::optional<FileFormat> format = {};  ///< That its ending must not deny.
 };
 
 using Outputs = std::vector<Output>;
@@ -23,8 +26,7 @@ using Outputs = std::vector<Output>;
 /// Nothing if all is well. Of devices only standard output counts: /dev/null may be given twice.
 std::optional<std::string> find_clash(std::span<const std::string> inputs, const Outputs& outputs);
 
-/// What is wrong if the name of an output ends as files of another format do: what is written into
-/// arm.png as SVG is read by nobody. Other endings, and none, are free.
+/// What is wrong if the name of an output ends as files of another format do.
 std::optional<std::string> find_foreign_ending(const Outputs& outputs);
 
 /// Prints either as wrong usage; false if there is none.

@@ -32,7 +32,9 @@ struct MoveArguments {
   std::string verified;
 
   /// Of files, each with its option.
-  Outputs outputs() const { return {{"--output", steps}, {"--json", json}}; }
+  Outputs outputs() const {
+    return {{"--output", steps, FileFormat::kHoldfastJson}, {"--json", json, FileFormat::kJson}};
+  }
 };
 
 /// The box that "X,Y,Z:X,Y,Z" says, by its two corners in any order; none if it is no box.

@@ -26,7 +26,9 @@ struct NextArguments {
   double memory_gb = 4;
 
   /// Of files, each with its option.
-  Outputs outputs() const { return {{"--json", json}, {"--svg", svg}}; }
+  Outputs outputs() const {
+    return {{"--json", json, FileFormat::kJson}, {"--svg", svg, FileFormat::kSvg}};
+  }
 };
 
 bool write_files(const NextArguments& options, const Structure& structure, const NextResult& result,

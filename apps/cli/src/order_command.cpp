@@ -38,7 +38,9 @@ struct OrderArguments {
 
   /// Of files, each with its option.
   Outputs outputs() const {
-    return {{"--output", steps}, {"--json", json}, {"--certificate", certificate}};
+    return {{"--output", steps, FileFormat::kHoldfastJson},
+            {"--json", json, FileFormat::kJson},
+            {"--certificate", certificate, FileFormat::kJson}};
   }
 };
 

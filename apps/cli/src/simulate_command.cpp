@@ -48,7 +48,10 @@ struct SimulateArguments {
 
   /// Of files, each with its option.
   Outputs outputs() const {
-    return {{"--json", json}, {"--trace", trace}, {"--story", story}, {"--svg", svg}};
+    return {{"--json", json, FileFormat::kJson},
+            {"--trace", trace},
+            {"--story", story},
+            {"--svg", svg, FileFormat::kSvg}};
   }
 };
 

@@ -29,7 +29,10 @@ struct StepsArguments {
 
   /// Of files, each with its option.
   Outputs outputs() const {
-    return {{"--json", json}, {"--svg", svg}, {"--html", html}, {"--vtk", vtk}};
+    return {{"--json", json, FileFormat::kJson},
+            {"--svg", svg, FileFormat::kSvg},
+            {"--html", html, FileFormat::kHtml},
+            {"--vtk", vtk, FileFormat::kPvd}};
   }
 };
 
@@ -150,7 +153,7 @@ int run(const StepsArguments& options) {
     return kExitUsage;
   }
   const std::vector<std::string> inputs = {options.file};
-  if (complain_of_outputs(inputs, options.outputs()) || complain_of_series(options)) {
+  if (complain_of_series(options) || complain_of_outputs(inputs, options.outputs())) {
     return kExitUsage;
   }
   const auto file = load_steps(options.file, options.reading);

@@ -38,7 +38,8 @@ base::Result<io::MoveReport> seek_moves(const io::Document& start, const io::Doc
   options.solver.thread_count = request.thread_count;
   auto plan = plan::find_moves(task.value(), options);
   if (!plan) {
-    return plan.error();
+    base::Error error = io::with_other_lattice(plan.error(), start);
+    return error.message == plan.error().message ? io::with_other_lattice(error, target) : error;
   }
   io::MoveReport report{
       .start = start, .task = std::move(task).value(), .plan = std::move(plan).value()};

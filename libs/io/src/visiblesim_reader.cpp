@@ -198,6 +198,32 @@ void expect_nothing_beside(XmlReading& reading, const pugi::xml_node& tree) {
   }
 }
 
+/// Numbers that no robot can have, in the words of the file: they stand in attributes, or in the
+/// JSON of <extension>; some follow from the pitch.
+void expect_possible_numbers(XmlReading& reading, const pugi::xml_node& parameters,
+                             const pugi::xml_node& own) {
+  const model::Material& material = reading.document.material;
+  for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
+    const double value = material.*parameter.value;
+    if (value >= parameter.lowest && value <= parameter.highest) {
+      continue;
+    }
+    const bool is_simulated = parameter.visiblesim != nullptr;
+    const pugi::xml_node node = is_simulated ? parameters : own;
+    const char* const name = is_simulated ? parameter.visiblesim : parameter.key;
+    const bool is_said = static_cast<bool>(node.attribute(name));
+    reading.fail(is_said ? node : parameters,
+                 fmt::format("{} of <{}>{} is {}, allowed is {} to {}", name, node.name(),
+                             is_said ? "" : ", which follows from globalL,", value,
+                             parameter.lowest, parameter.highest));
+  }
+  if (auto fault = reading.has_failed() ? std::nullopt : find_number_fault(reading.document)) {
+    const pugi::xml_node extension = own.child(kExtensionElement);
+    reading.fail(extension,
+                 fmt::format("{} in <{}>: {}", fault->where, extension.name(), fault->message));
+  }
+}
+
 void read_roots(XmlReading& reading, const pugi::xml_node& tree, const ReadOptions& options) {
   for (const pugi::xml_node& child : tree.children()) {
     if (!is_one_of(child.name(), {"parameters", "world"})) {
@@ -221,6 +247,7 @@ void read_roots(XmlReading& reading, const pugi::xml_node& tree, const ReadOptio
   read_parameters(reading, parameters);
   read_world(reading, world, options);
   reading.complete_material(where);
+  expect_possible_numbers(reading, parameters, own);
 }
 
 }  // namespace

@@ -251,8 +251,17 @@ TEST(Conversion, keeps_every_digit_of_a_number) {
        {0.1, 1.0 / 3, 1e-5, 1e21, 123456789.123456789, -0.0,
         std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max()}) {
     Document document;
-    document.material.contact_gamma = value;
-    document.material.strength_lateral_n = value;
+    document.known_answer = KnownAnswer{
+        .verdict = "safe", .margin_mm = value, .load_ratio_max = std::nullopt, .source = ""};
+    expect_equal_after_conversion(document);
+  }
+  // The ends of what is allowed, which XML is refused beyond, and digits between.
+  for (const double share : {0.0, 1.0 / 3, 0.123456789123456789, 1 - 1e-16, 1.0}) {
+    Document document;
+    for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
+      document.material.*parameter.value = std::min(
+          parameter.highest, parameter.lowest + share * (parameter.highest - parameter.lowest));
+    }
     expect_equal_after_conversion(document);
   }
 }
