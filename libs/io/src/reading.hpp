@@ -117,8 +117,4 @@ class Reading {
   std::optional<base::Cell> grid_;
 };
 
-/// The first number of material, connectors or kinds that is out of its range, at its JSON pointer:
-/// what make_spec() refuses.
-std::optional<base::Error> find_number_fault(const Document& document);
-
 }  // namespace holdfast::io

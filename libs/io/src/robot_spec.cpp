@@ -12,7 +12,6 @@
 #include "holdfast/io/lattice_names.hpp"
 #include "holdfast/model/robot_catalogue.hpp"
 #include "json_values.hpp"
-#include "reading.hpp"
 #include "robot_defaults.hpp"
 #include "text_input.hpp"
 #include "vocabulary.hpp"
@@ -285,10 +284,6 @@ bool is_connected(const Document& document, const base::Lattice& lattice) {
 }
 
 }  // namespace
-
-std::optional<base::Error> find_number_fault(const Document& document) {
-  return find_fault(document);
-}
 
 base::Error with_other_lattice(base::Error error, const Document& document) {
   if (document.modules.empty() || is_connected(document, document.extension.lattice)) {

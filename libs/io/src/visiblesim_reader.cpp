@@ -198,8 +198,8 @@ void expect_nothing_beside(XmlReading& reading, const pugi::xml_node& tree) {
   }
 }
 
-/// Numbers that no robot can have, in the words of the file: they stand in attributes, or in the
-/// JSON of <extension>; some follow from the pitch.
+/// Numbers of the material that no robot can have, in the words of the file; some follow from the
+/// pitch.
 void expect_possible_numbers(XmlReading& reading, const pugi::xml_node& parameters,
                              const pugi::xml_node& own) {
   const model::Material& material = reading.document.material;
@@ -216,11 +216,6 @@ void expect_possible_numbers(XmlReading& reading, const pugi::xml_node& paramete
                  fmt::format("{} of <{}>{} is {}, allowed is {} to {}", name, node.name(),
                              is_said ? "" : ", which follows from globalL,", value,
                              parameter.lowest, parameter.highest));
-  }
-  if (auto fault = reading.has_failed() ? std::nullopt : find_number_fault(reading.document)) {
-    const pugi::xml_node extension = own.child(kExtensionElement);
-    reading.fail(extension,
-                 fmt::format("{} in <{}>: {}", fault->where, extension.name(), fault->message));
   }
 }
 

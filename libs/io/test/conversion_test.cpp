@@ -4,6 +4,7 @@
 // Conversion loses nothing: what one format says comes back from the other as an equal document.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>

@@ -15,15 +15,14 @@
 namespace holdfast::io {
 namespace {
 
-/// Line 2 is <parameters>, 5 <block>, 6 <holdfast>, 7 <knownAnswer>, 8 <extension>.
+/// Line 2 is <parameters>, 5 <block>, 6 <holdfast>, 7 <knownAnswer>.
 std::string file_with(const std::string& parameters, const std::string& own,
-                      const std::string& answer, const std::string& extension = "{}",
-                      const std::string& block = "position=\"0,0,0\"") {
+                      const std::string& answer, const std::string& block = "position=\"0,0,0\"") {
   return fmt::format(
       "<vs>\n<parameters {}/>\n<world gridSize=\"9,9,9\">\n<blockList blockSize=\"40,40,40\">\n"
       "<block {}/></blockList>\n<holdfast {}>\n<knownAnswer verdict=\"safe\" {}/>\n"
-      "<extension>{}</extension></holdfast></world></vs>",
-      parameters, block, own, answer, extension);
+      "<extension>{{}}</extension></holdfast></world></vs>",
+      parameters, block, own, answer);
 }
 
 /// Read or made into a robot, whichever refuses it.
@@ -75,18 +74,8 @@ TEST(XmlNumbers, of_all_other_attributes_are_named_too) {
     expect_named(file_with(fmt::format("globalSupportZ=\"{}\"", value), "", ""), "globalSupportZ",
                  "parameters", 2);
     expect_named(file_with("", fmt::format("shift=\"0,{},0\"", value), ""), "shift", "holdfast", 6);
-    expect_named(file_with("", "", "", "{}", fmt::format("position=\"0,{},0\"", value)), "position",
+    expect_named(file_with("", "", "", fmt::format("position=\"0,{},0\"", value)), "position",
                  "block", 5);
-  }
-}
-
-/// Its text is JSON, so there a pointer is right, behind the element that it begins in.
-TEST(XmlNumbers, of_the_extension_are_named_within_it) {
-  for (const char* const json :
-       {R"({"material": {"strength_n": -1}})", R"({"material": {"shear_strength_n": 0}})",
-        R"({"kinds": {"heavy": {"mass_kg": 0}}})"}) {
-    const base::Error error = error_of(file_with("", "", "", json));
-    EXPECT_EQ(error.where.find("line 8"), 0U) << error.where << error.message;
   }
 }
 
