@@ -41,9 +41,9 @@ class RandomDocument {
     document.name = text();
     document.description = text();
     document.support_z = coordinate();
-    document.material.mass_kg = number();
-    document.material.moment_x_mm4 = number();
-    document.material.gravity_m_s2 = number();
+    document.material.mass_kg = figure();
+    document.material.moment_x_mm4 = figure();
+    document.material.gravity_m_s2 = figure();
     for (std::uint64_t i = below(6); i > 0; --i) {
       document.modules.push_back({cell(), below(2) == 0, color(), attributes()});
     }
@@ -146,6 +146,12 @@ class RandomDocument {
   std::int32_t coordinate() { return static_cast<std::int32_t>(below(2'000'001)) - 1'000'000; }
 
   base::Cell cell() { return {coordinate(), coordinate(), coordinate()}; }
+
+  /// A number that a material may have, with all its digits.
+  double figure() {
+    const double digits = static_cast<double>(below(std::uint64_t{1} << 52U));
+    return std::ldexp(1 + std::ldexp(digits, -52), static_cast<int>(below(78)) - 39);
+  }
 
   /// Any finite number: sign, exponent and digits at random.
   double number() {
