@@ -62,8 +62,10 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/holdfast.pc
 # ./dev page and ./dev firmware have built them.
 install(FILES docs/structure.schema.json build/page/holdfast.html
         DESTINATION ${CMAKE_INSTALL_DATADIR}/holdfast COMPONENT program OPTIONAL)
-install(FILES build/firmware/module_stm32f0.elf
-        DESTINATION ${CMAKE_INSTALL_DATADIR}/holdfast COMPONENT firmware OPTIONAL)
+foreach(board firmware firmware/v1)
+  install(FILES build/${board}/module_stm32f0.elf
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/holdfast/${board} COMPONENT firmware OPTIONAL)
+endforeach()
 set(manual ${PROJECT_SOURCE_DIR}/apps/cli/manual)
 find_program(HOLDFAST_GZIP gzip REQUIRED)
 mark_as_advanced(HOLDFAST_GZIP)

@@ -24,8 +24,9 @@ FUNCTION_LINES_MAX = 70
 COLUMNS_MAX = 100
 FREESTANDING = {'base', 'boards', 'mechanics', 'agent', 'module'}
 APPLICATIONS = ('apps/', 'examples/', 'python/')
-FACADE_HEADERS = {'holdfast', 'distributed', 'emulated', 'exit_code', 'move', 'order',
-                  'simulated_next', 'simulated_stages', 'simulated_steps', 'steps', 'trial'}
+FACADE_HEADERS = {'holdfast', 'distributed', 'emulated', 'exit_code', 'file_ending', 'move',
+                  'order', 'simulated_next', 'simulated_stages', 'simulated_steps', 'steps',
+                  'trial'}
 HOSTED_HEADERS = {'string', 'vector', 'map', 'set', 'memory', 'iostream', 'fstream', 'variant',
                   'cstdio', 'cstdlib', 'functional', 'stdexcept'}
 # base is freestanding but for what says in its first lines that it is for hosts.

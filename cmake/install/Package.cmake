@@ -1,5 +1,5 @@
 # Debian packages of what is installed: holdfast (the programs), libholdfast0.1, libholdfast-dev
-# and, if it is built, python3-holdfast.
+# and, if they are built, python3-holdfast and holdfast-firmware, the images that holdfast emulates.
 # cpack -G DEB, or ./dev package.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
@@ -52,7 +52,13 @@ if(HOLDFAST_BUILD_PYTHON)
       "python3-matplotlib, python3-pil, python3-vtk9, holdfast")
 endif()
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS xdg-utils)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "xdg-utils, holdfast-firmware")
+if(EXISTS ${PROJECT_SOURCE_DIR}/build/firmware/module_stm32f0.elf)
+  list(APPEND CPACK_COMPONENTS_ALL firmware)
+  holdfast_package(firmware holdfast-firmware science
+    "will a modular robot hold? (images of the modules' firmware, for holdfast emulate)")
+  set(CPACK_DEBIAN_FIRMWARE_PACKAGE_ARCHITECTURE all)
+endif()
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SHLIBDEPS ON)
 file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/shlibs
      "libholdfast ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} ${library} (>= ${version})\n")

@@ -495,8 +495,11 @@ class Robot:
 
     def save(self, path: Path) -> None:
         """Writes holdfast JSON, or VisibleSim XML to a file that ends in .xml."""
-        text = self.visiblesim() if os.fsdecode(path).endswith('.xml') else self.json()
-        _core.write_file(path, text)
+        if os.fsdecode(path).endswith('.xml'):
+            _core.write_file(path, self.visiblesim())
+        else:
+            _core.expect_ending(path, 'structure')
+            _core.write_file(path, self.json())
 
     def __len__(self) -> int:
         """How many modules there are, planned ones too."""

@@ -36,6 +36,16 @@ std::string path_of(const py::handle& given) {
   throw Error("no file can have the path " + py::repr(given).cast<std::string>());
 }
 
+void expect_ending(const std::string& path, std::string_view kind) {
+  const FileFormat format = kind == "json"  ? FileFormat::kJson
+                            : kind == "csv" ? FileFormat::kCsv
+                            : kind == "svg" ? FileFormat::kSvg
+                            : kind == "vtu" ? FileFormat::kVtu
+                            : kind == "pvd" ? FileFormat::kPvd
+                                            : FileFormat::kHoldfastJson;
+  take(find_foreign_ending(format, path), path);
+}
+
 std::string utf8_of(const py::handle& given, const char* what) {
   if (!py::isinstance<py::str>(given)) {
     refuse_type(given, what, "a text");

@@ -197,6 +197,7 @@ std::string text_of(const Write& write) {
 /// Writes a file, whole or not at all.
 void save(const CheckedStructure& check, const py::handle& given, const std::string& kind) {
   const std::string path = path_of(given);
+  expect_ending(path, kind);
   const auto error = without_gil([&] {
     return write_file(path, [&](std::ostream& out) {
       if (kind == "json") {
@@ -241,7 +242,7 @@ void add_texts(py::class_<CheckedStructure, std::shared_ptr<CheckedStructure>>& 
                  [&](std::ostream& out) { write_connections_csv(out, *c.structure, c.result); });
            })
       .def("certificate",
-           [](const CheckedStructure& c) { return take(certificate_text(c.result)); })
+           [](const CheckedStructure& c) { return take(certificate_text(*c.structure, c.result)); })
       .def("save", &save);
 }
 

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "holdfast/file_ending.hpp"
 #include "holdfast/holdfast.hpp"
 
 /// The extension module holdfast._core: the facade as Python sees it. All that is for people, that
@@ -51,6 +52,10 @@ struct CheckedStructure {
 };
 
 using SharedCheck = std::shared_ptr<const CheckedStructure>;
+
+/// Raises holdfast.Error if the path ends as files of another kind do; this one is "json", "csv",
+/// "svg", "vtu", "pvd" or "structure", which is holdfast JSON.
+void expect_ending(const std::string& path, std::string_view kind);
 
 /// A path as the system has it, from what Python's open() takes. Raises holdfast.Error for what can
 /// be no path.

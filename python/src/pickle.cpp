@@ -155,12 +155,12 @@ void visit(Archive& archive, verdict::Assessment& found) {
 
 template <class Archive>
 void visit(Archive& archive, proof::Proof& proof) {
-  auto& [law, material, support_z, bits, modules, fields] = proof.certificate;
-  auto& [is_proved, reason, low, high, connection_count, is_standing, facet_count] =
+  auto& [name, law, material, support_z, bits, modules, planned_count, fields] = proof.certificate;
+  auto& [is_proved, reason, low, high, connection_count, is_standing, topples, facet_count] =
       proof.verification;
-  archive(law, material, support_z, bits, modules, fields, is_proved, reason, low, high,
-          connection_count, is_standing, facet_count, proof.solve_count, proof.displacement,
-          proof.displacement_low);
+  archive(name, law, material, support_z, bits, modules, planned_count, fields, is_proved, reason,
+          low, high, connection_count, is_standing, topples, facet_count, proof.solve_count,
+          proof.displacement, proof.displacement_low);
 }
 
 template <class Archive>

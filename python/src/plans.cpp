@@ -310,6 +310,7 @@ void add_steps(py::module_& module) {
       .def("html", [](const JudgedSteps& s) { return steps_html(s.file, s.result); })
       .def("save_vtk", [](const JudgedSteps& s, const py::handle& given) {
         const std::string path = path_of(given);
+        expect_ending(path, "pvd");
         take(without_gil([&] { return write_steps_vtk(path, s.file, s.result); }), path);
       });
   module.def("steps", &steps);

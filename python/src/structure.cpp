@@ -378,6 +378,9 @@ void add_structure(py::module_& module) {
   module.def("lattice_name", [](const py::handle& name) {
     return io::lattice_name(take(io::find_lattice(utf8_of(name, "lattice"))));
   });
+  module.def("expect_ending", [](const py::handle& given, const std::string& kind) {
+    expect_ending(path_of(given), kind);
+  });
   module.def("write_file", [](const py::handle& given, const std::string& text) {
     const std::string path = path_of(given);
     take(without_gil([&] { return write_file(path, text); }), path);

@@ -1,6 +1,8 @@
 # SPDX-FileCopyrightText: The holdfast authors
 # SPDX-License-Identifier: Apache-2.0
 """Numbers and texts that are not allowed are refused in one line, whatever takes them."""
+import json
+
 import holdfast
 import pytest
 from holdfast import Robot
@@ -95,3 +97,49 @@ def test_other_values_that_are_refused(tmp_path):
         refuses(lambda given=milliseconds: holdfast.animate([report], milliseconds=given))
     for name in ('film.gif', 'film.html'):
         refuses(lambda name=name: holdfast.animate([report], tmp_path / 'absent' / name))
+
+
+def test_the_lattice_that_connects_the_modules_is_named():
+    catoms = Robot([[2, 2, 0], [1, 1, 1]], lattice='face-centred')
+    cells = {'modules': [[2, 2, 0], [1, 1, 1]], 'planned': [[2, 2, 2]]}
+    text = json.dumps({'format': 'holdfast-structure', 'version': 1, **cells})
+    assert len(catoms) == 2
+    for call in (lambda: Robot([[2, 2, 0], [1, 1, 1]]), lambda: Robot.from_text(text)):
+        assert 'the lattice is cubic, in face-centred it is connected' in refuses(call)
+
+
+# What is written, as it is said, and its own endings; --vtk and -o of the program say the same.
+SAVERS = {
+    'save_json': (lambda path: ROBOT.check().save_json(path), 'JSON', ['.json']),
+    'save_csv': (lambda path: ROBOT.check().save_csv(path), 'CSV', ['.csv']),
+    'save_svg': (lambda path: ROBOT.check().save_svg(path), 'SVG', ['.svg']),
+    'save_vtu': (lambda path: ROBOT.check().save_vtu(path), "VTK's XML format", ['.vtu']),
+    'save_vtk': (lambda path: holdfast.steps(ROBOT).save_vtk(path), 'a list of .vtu files',
+                 ['.pvd']),
+    'save': (ROBOT.save, 'holdfast JSON', ['.json', '.xml']),
+    'animate': (lambda path: holdfast.animate([ROBOT.check()], path), None, ['.gif', '.html'])}
+ENDINGS = ['.json', '.csv', '.svg', '.vtu', '.pvd', '.html', '.htm', '.holdfast', '.xml', '.png',
+           '.PNG', '.pdf', '.jpg', '.gif', '.vtk', '.stl', '.XML']
+
+
+@pytest.mark.parametrize('name', SAVERS)
+def test_what_a_file_is_called_is_what_is_written(name, tmp_path):
+    save, written, own = SAVERS[name]
+    for ending in set(ENDINGS) - set(own):
+        path = tmp_path / f'robot{ending}'
+        text = refuses(lambda: save(path))
+        said = f'what is written is {written}, whose files end in {own[0]}' if written else (
+            'expected is a name that ends in .gif or .html')
+        assert text == f'{path}: {said}'
+    assert not list(tmp_path.iterdir())
+    for ending in own if name != 'animate' else []:
+        save(tmp_path / f'robot{ending}')
+        assert (tmp_path / f'robot{ending}').stat().st_size > 0
+
+
+def test_every_saver_is_tried():
+    """Whatever the package gives that writes a file."""
+    classes = [holdfast.Robot, holdfast.Report, holdfast.Steps, holdfast.Order,
+               *(made for made in vars(holdfast).values() if isinstance(made, type))]
+    found = {name for made in classes for name in dir(made) if name.startswith('save')}
+    assert found == set(SAVERS) - {'animate'}

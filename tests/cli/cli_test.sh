@@ -61,10 +61,20 @@ expect_line proof.json '"proved": true'
 code=0
 "$checker" proof.txt >out || code=$?
 [ "$code" -eq 1 ] || fault "the checker does not prove an overload: $code $(cat out)"
-expect_line out '^  OVERLOAD: a connection breaks$'
+expect_line out '^  verdict +OVERLOAD: a connection breaks$'
 expect_line out "one solution of the paper's contact law, which may have others"
 expect_line out '^PROVED .* between 1\.2003979959[0-9]* and 1\.2003979959[0-9]*$'
-expect_line out '^  13 modules, 14 connections, 3 facets on the ground; contact regularised$'
+expect_line out '^  contact +regularised; 14 connections, 3 facets on the ground$'
+expect_line out '^  robot +arm_breaks_b, 13 modules'
+# The robot is told by what sha256sum makes of the certificate's own lines.
+own_digest() {
+  { sed -n '/^pitch_mm/,/^support_z/p' "$1"
+    awk '/^existing/ { kind = "existing"; next } /^planned/ { kind = "planned"; next }
+         /^fields/ { exit } kind { print $1, $2, $3, $4, kind }' "$1" | LC_ALL=C sort
+  } | sha256sum | cut -d' ' -f1
+}
+expect_line out "^  digest +$(own_digest proof.txt)\$"
+expect_line proof.json "\"digest\": \"$(own_digest proof.txt)\""
 sed 's/^3 1 0 ground pressed 00$/3 1 0 ground open 00/' proof.txt >forged.txt
 code=0
 "$checker" forged.txt >out 2>err || code=$?
@@ -74,10 +84,10 @@ code=0
 [ "$code" -eq 65 ] || fault "the checker takes a structure: $code"
 expect_exit 0 check "$safe" --certificate safe_proof.txt
 "$checker" safe_proof.txt >out || fault "the checker does not prove what is safe: $(cat out)"
-expect_line out '^  SAFE: no connection breaks, and the robot stands$'
+expect_line out '^  verdict +SAFE: no connection breaks, and the robot stands$'
 expect_exit 0 check "$unstable" --bonded --certificate bonded_proof.txt
 "$checker" bonded_proof.txt >out || fault "the checker does not prove a bonded robot: $(cat out)"
-expect_line out 'neither lift nor tilt: .* it may topple'
+expect_line out 'neither lift nor tilt: it topples if it only rests on them'
 expect_exit 1 check "$unstable" --certificate none.txt
 expect_line err 'no certificate: the robot topples'
 grep -q older err && fault "an older file where there is none"
@@ -472,6 +482,22 @@ for arguments in "check $safe --svg a.png" "check $safe --vtk a.vtk" "check $saf
   expect_line err 'what is written is '
 done
 expect_exit 0 check "$safe" --svg a.picture --json plain
+expect_exit 64 generate cube 3 -o a.png
+expect_exit 64 check "$safe" --vtk a.pvd
+expect_line err "what is written is VTK's XML format, whose files end in .vtu"
+
+# Whoever finds modules that are not connected says which lattice connects them.
+printf '%s' '{"format": "holdfast-structure", "version": 1,
+  "modules": [[2,2,0], [1,1,1]]' | tee catoms_alone.json >catoms_and_one.json
+echo '}' >>catoms_alone.json
+echo ', "planned": [[2,2,2]]}' >>catoms_and_one.json
+for arguments in "check catoms_and_one.json" "steps catoms_and_one.json" "next catoms_alone.json" \
+  "simulate catoms_alone.json" "order catoms_and_one.json" "view catoms_alone.json" \
+  "move catoms_alone.json catoms_alone.json"; do
+  # shellcheck disable=SC2086
+  expect_exit 65 $arguments
+  expect_line err 'not connected: .*; the lattice is cubic, in face-centred it is connected'
+done
 
 # A full disk and a closed output are errors of every command.
 for arguments in "check $safe" "check $safe --json -" "simulate $safe --link unit" \

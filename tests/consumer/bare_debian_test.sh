@@ -33,6 +33,17 @@ inside 'holdfast check --quiet --certificate /tmp/proof /tmp/arm_breaks_a.json
         holdfast view --out - /tmp/arm_breaks_a.json >/tmp/page.html
         grep -q arm_breaks_a /tmp/page.html'
 
+# The images are a package of their own, made where they are built.
+if ls "$packages"/holdfast-firmware_*.deb >/dev/null 2>&1; then
+  install '/tmp/holdfast-firmware_*.deb'
+  inside 'holdfast emulate --quiet /tmp/arm_breaks_a.json'
+else
+  inside 'code=0
+          holdfast emulate /tmp/arm_breaks_a.json 2>/tmp/log || code=$?
+          [ $code -eq 65 ]
+          grep -Eq "holdfast-firmware|without Unicorn" /tmp/log'
+fi
+
 install '/tmp/python3-holdfast_*.deb'
 inside 'cd / && python3 -c "
 import holdfast

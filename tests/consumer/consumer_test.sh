@@ -38,6 +38,27 @@ if [ -f "$prefix/share/holdfast/holdfast.html" ]; then
 else
   echo "consumer: no page is built, so view is not tried"
 fi
+# Emulated modules run with what was installed, or it is said what is missing and what brings it,
+# before anything else is read.
+for board in v2 v1; do
+  code=0
+  "$prefix/bin/holdfast" emulate --quiet --board $board "$repository/scenarios/arm_tips_a.json" \
+    2>"$work/log" || code=$?
+  image=$prefix/share/holdfast/firmware/module_stm32f0.elf
+  [ $board = v2 ] || image=$prefix/share/holdfast/firmware/v1/module_stm32f0.elf
+  if ! grep -qw unicorn "$build/holdfast.pc"; then
+    grep -q "without Unicorn .* './dev firmware' in its sources" "$work/log"
+  elif [ ! -f "$image" ]; then
+    grep -q "no firmware image is here; the package holdfast-firmware has it" "$work/log"
+  else
+    [ $code -eq 0 ]
+  fi || fault "emulate --board $board: exit $code, $(cat "$work/log")"
+  rm -f "$image"
+  code=0
+  "$prefix/bin/holdfast" emulate --board $board missing.json 2>"$work/log" || code=$?
+  [ $code -eq 65 ] && grep -Eq "without Unicorn|the package holdfast-firmware" "$work/log" ||
+    fault "emulate without an image: exit $code, $(cat "$work/log")"
+done
 for file in bin/holdfast share/holdfast/structure.schema.json share/man/man1/holdfast.1.gz \
   share/man/man1/holdfast-checker.1.gz share/bash-completion/completions/holdfast \
   share/zsh/vendor-completions/_holdfast share/fish/vendor_completions.d/holdfast.fish; do

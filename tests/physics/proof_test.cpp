@@ -62,7 +62,8 @@ TEST(Proof, proves_every_scenario_that_stands) {
     EXPECT_EQ(result.assessment.verdict, plain.assessment.verdict);
     ASSERT_TRUE(result.proof);
     EXPECT_EQ(result.proof->is_proved(), result.assessment.is_stable);
-    EXPECT_EQ(static_cast<bool>(certificate_text(result)), result.assessment.is_stable);
+    EXPECT_EQ(static_cast<bool>(certificate_text(structure.value(), result)),
+              result.assessment.is_stable);
   }
 }
 

@@ -34,12 +34,13 @@ constexpr const char* kHelp =
     "and\n"
     "without the code that solved it: that the largest load ratio lies in the range shown, and "
     "that\n"
-    "the robot stands.\n"
-    "Exit: 0 proved that it holds, 1 proved that a connection breaks, 2 proved, but neither of\n"
-    "both, 3 not proved, 64 wrong usage, 65 not readable.\n";
+    "the robot stands. The digest is that of the robot that 'holdfast check FILE --prove' shows.\n"
+    "Exit: 0 proved that it holds, 1 proved that a connection breaks or that it topples, 2 "
+    "proved,\n"
+    "but neither of both, 3 not proved, 64 wrong usage, 65 not readable.\n";
 
 constexpr int kExitHolds = 0;
-constexpr int kExitBreaks = 1;
+constexpr int kExitFails = 1;
 constexpr int kExitOpen = 2;
 constexpr int kExitNotProved = 3;
 
@@ -50,8 +51,12 @@ struct Verdict {
 };
 
 Verdict verdict_of(const certificate::Verification& found) {
+  if (found.topples && !found.is_standing) {
+    return {"UNSTABLE: it topples, as the centre of mass lies beyond the support polygon",
+            kExitFails};
+  }
   if (found.ratio_low >= 1) {
-    return {"OVERLOAD: a connection breaks", kExitBreaks};
+    return {"OVERLOAD: a connection breaks", kExitFails};
   }
   if (found.ratio_high >= 1) {
     return {"whether a connection breaks is open: the range has 1 in it", kExitOpen};
@@ -63,17 +68,28 @@ Verdict verdict_of(const certificate::Verification& found) {
 }
 
 /// Under which assumption all this holds; empty if there is none.
-const char* caveat(certificate::Law law) {
+const char* caveat(certificate::Law law, const certificate::Verification& found) {
   switch (law) {
     case certificate::Law::kRegularised:
       return "for one solution of the paper's contact law, which may have others";
     case certificate::Law::kBonded:
-      return "for supports that can neither lift nor tilt: where a robot only rests on them, it "
-             "may topple all the same";
+      return found.topples ? "for supports that can neither lift nor tilt: it topples if it only "
+                             "rests on them"
+             : found.facet_count > 0
+                 ? "for supports that can neither lift nor tilt: where it only rests on them, "
+                   "nothing is proved"
+                 : "";
     case certificate::Law::kUnilateral:
       break;
   }
   return "";
+}
+
+/// Of which robot all this is.
+void show_robot(const certificate::Certificate& made) {
+  std::printf("  robot       %s\n  digest      %s\n",
+              certificate::robot_words(made.name, made.modules.size(), made.planned_count).c_str(),
+              certificate::digest(made).c_str());
 }
 
 /// The range with all its digits, so that no rounding narrows it.
@@ -81,17 +97,20 @@ int show(const certificate::Certificate& made) {
   const certificate::Verification found = certificate::verify(made);
   if (!found.is_proved) {
     std::printf("NOT PROVED  %s\n", found.reason.c_str());
+    show_robot(made);
     return kExitNotProved;
   }
-  std::printf("PROVED  the largest load ratio lies between %.17g and %.17g\n", found.ratio_low,
+  std::printf("PROVED      the largest load ratio lies between %.17g and %.17g\n", found.ratio_low,
               found.ratio_high);
-  std::printf("  %zu modules, %zu connections, %zu facets on the ground; contact %s\n",
-              made.modules.size(), found.connection_count, found.facet_count, name(made.law));
   const Verdict verdict = verdict_of(found);
-  std::printf("  %s\n", verdict.text);
-  if (*caveat(made.law) != '\0') {
-    std::printf("  %s\n", caveat(made.law));
+  std::printf("  verdict     %s\n", verdict.text);
+  const char* const assumption = caveat(made.law, found);
+  if (*assumption != '\0') {
+    std::printf("              %s\n", assumption);
   }
+  show_robot(made);
+  std::printf("  contact     %s; %zu connections, %zu facets on the ground\n", name(made.law),
+              found.connection_count, found.facet_count);
   return verdict.code;
 }
 

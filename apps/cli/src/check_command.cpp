@@ -32,6 +32,13 @@ struct CheckArguments {
   double limit_seconds = limit::LimitOptions{}.seconds_max;
   int thread_count = 0;
   double memory_gb = 4;
+
+  /// Of files, each with its option.
+  Outputs outputs() const {
+    return {{"--json", json, FileFormat::kJson}, {"--csv", csv, FileFormat::kCsv},
+            {"--svg", svg, FileFormat::kSvg},    {"--vtk", vtk, FileFormat::kVtu},
+            {"--html", html, FileFormat::kHtml}, {"--certificate", certificate}};
+  }
 };
 
 /// Goes through the files of one run and keeps count.
@@ -59,7 +66,9 @@ class CheckRun {
  private:
   bool is_many() const { return options_.files.size() > 1; }
 
-  bool shows_text() const { return !options_.is_quiet && leaves_standard_output(); }
+  bool shows_text() const {
+    return !options_.is_quiet && leaves_standard_output(options_.outputs());
+  }
 
   void check_file(const std::string& file) {
     auto loaded = load_with_notes(file, options_.reading, options_.thread_count);
@@ -100,7 +109,7 @@ class CheckRun {
       write_page(structure, result);
     }
     if (!options_.certificate.empty()) {
-      write_certificate(result);
+      write_certificate(structure, result);
     }
   }
 
@@ -149,8 +158,8 @@ class CheckRun {
     write(options_.html, filled.value());
   }
 
-  void write_certificate(const CheckResult& result) {
-    const auto text = certificate_text(result);
+  void write_certificate(const Structure& structure, const CheckResult& result) {
+    const auto text = certificate_text(structure, result);
     if (text) {
       write(options_.certificate, text.value());
     } else {
@@ -271,12 +280,7 @@ int run(const CheckArguments& options) {
         options.files.size());
     return kExitUsage;
   }
-  if (complain_of_outputs(options.files, {{"--json", options.json},
-                                          {"--csv", options.csv},
-                                          {"--svg", options.svg},
-                                          {"--vtk", options.vtk},
-                                          {"--html", options.html},
-                                          {"--certificate", options.certificate}})) {
+  if (complain_of_outputs(options.files, options.outputs())) {
     return kExitUsage;
   }
   return CheckRun(options).run();

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <span>
 #include <string>
@@ -119,6 +120,14 @@ inline std::string robot_name_fault(const std::string& name) {
              ? std::string()
              : fmt::format("the robot '{}' is none of the catalogue; holdfast robots lists it",
                            io::one_line(name));
+}
+
+/// A document with a name: that of its file where it has none.
+inline io::Document named(io::Document document, const std::string& file) {
+  if (document.name.empty() && file != "-") {
+    document.name = std::filesystem::path(file).stem().string();
+  }
+  return document;
 }
 
 /// The options of commands that read structures, for what a file leaves open.

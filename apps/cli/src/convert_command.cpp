@@ -66,7 +66,7 @@ int run(const ConvertArguments& options) {
                options.to);
     return kExitUsage;
   }
-  if (complain_of_outputs({&options.from, 1}, {{"the output", options.to}})) {
+  if (complain_of_outputs({&options.from, 1}, {{{"the output", options.to}}})) {
     return kExitUsage;
   }
   const auto read = read_with_notes(options.from, options.reading);

@@ -37,13 +37,19 @@ struct EmulateArguments {
   std::string connections = "all";
   std::string svg;
   bool is_quiet = false;
+
+  /// Of files, each with its option.
+  Outputs outputs() const {
+    return {{"--json", json, FileFormat::kJson}, {"--svg", svg, FileFormat::kSvg}};
+  }
 };
 
 /// What ./dev firmware has built, or what was installed; if neither is there, where the first would
 /// be.
 std::string default_image(const std::string& board) {
-  const std::string folder = board == "v1" ? "firmware/v1" : "firmware";
-  const std::vector<std::filesystem::path> places = places_of("module_stm32f0.elf", folder);
+  const char* const name =
+      board == "v1" ? "firmware/v1/module_stm32f0.elf" : "firmware/module_stm32f0.elf";
+  const std::vector<std::filesystem::path> places = places_of(name, "");
   return find_file(places).value_or(places[1]).string();
 }
 
@@ -54,8 +60,13 @@ class EmulateRun {
 
   int run() {
     const std::string inputs[] = {options_.file, image()};
-    if (complain_of_outputs(inputs, {{"--json", options_.json}, {"--svg", options_.svg}})) {
+    if (complain_of_outputs(inputs, options_.outputs())) {
       return kExitUsage;
+    }
+    if (options_.pages.empty()) {
+      if (const auto missing = find_emulator_fault(image())) {
+        return fail(*missing, image());
+      }
     }
     const auto structure = load_with_notes(options_.file, options_.reading);
     if (!structure) {
@@ -146,7 +157,7 @@ class EmulateRun {
 
   /// False if a file cannot be written.
   bool show(const Structure& structure, const CheckResult& exact, const EmulatedRun& run) const {
-    const bool is_silent = options_.is_quiet || !leaves_standard_output();
+    const bool is_silent = options_.is_quiet || !leaves_standard_output(options_.outputs());
     return show_run(options_, is_silent, structure, exact, run, run.run);
   }
 

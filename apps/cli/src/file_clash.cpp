@@ -65,41 +65,6 @@ bool is_standard_output(std::string_view path) {
   return path == "-" || host::OutputFile::is_descriptor(host::OutputFile::target(path));
 }
 
-/// What an option writes.
-struct Format {
-  std::string_view option;
-  std::string_view name;
-  std::vector<std::string_view> endings;
-
-  bool takes(std::string_view ending) const {
-    return std::ranges::find(endings, ending) != endings.end();
-  }
-};
-
-const Format kFormats[] = {{"--json", "JSON", {".json"}},
-                           {"--output", "holdfast JSON", {".json", ".holdfast"}},
-                           {"--csv", "CSV", {".csv"}},
-                           {"--svg", "SVG", {".svg"}},
-                           {"--vtk", "VTK's XML format", {".vtu", ".pvd"}},
-                           {"--html", "HTML", {".html", ".htm"}},
-                           {"--out", "HTML", {".html", ".htm"}}};
-
-/// Of formats that nothing here writes.
-constexpr std::string_view kOtherEndings[] = {".png", ".pdf",    ".jpg", ".jpeg", ".gif", ".eps",
-                                              ".vtk", ".vtkhdf", ".xml", ".stl",  ".obj", ".md"};
-
-/// In small letters, with its dot.
-std::string ending_of(std::string_view path) {
-  std::string ending = fs::path(path).extension().string();
-  std::ranges::transform(ending, ending.begin(), [](char letter) {
-    return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
-  });
-  return ending;
-}
-
-/// One command runs in a process.
-bool takes_standard_output = false;
-
 struct Entry {
   Output output;
   Identity identity;
@@ -113,8 +78,7 @@ bool clash(const Entry& a, const Entry& b) {
 
 }  // namespace
 
-std::optional<std::string> find_clash(std::span<const std::string> inputs,
-                                      std::initializer_list<Output> outputs) {
+std::optional<std::string> find_clash(std::span<const std::string> inputs, const Outputs& outputs) {
   std::vector<Entry> entries;
   for (const Output& output : outputs) {
     if (!output.path.empty()) {
@@ -147,26 +111,18 @@ std::optional<std::string> find_clash(std::span<const std::string> inputs,
   return std::nullopt;
 }
 
-std::optional<std::string> find_foreign_ending(std::initializer_list<Output> outputs) {
+std::optional<std::string> find_foreign_ending(const Outputs& outputs) {
   for (const Output& output : outputs) {
-    const std::string ending = ending_of(output.path);
-    const auto own = std::ranges::find(kFormats, output.option, &Format::option);
-    if (own == std::end(kFormats) || is_standard_output(output.path) || own->takes(ending)) {
-      continue;
-    }
-    const bool is_foreign =
-        std::ranges::find(kOtherEndings, ending) != std::end(kOtherEndings) ||
-        std::ranges::any_of(kFormats, [&](const Format& other) { return other.takes(ending); });
-    if (is_foreign) {
-      return fmt::format("{} {}: what is written is {}, whose files end in {}", output.option,
-                         output.path, own->name, own->endings.front());
+    if (output.format && !is_standard_output(output.path)) {
+      if (const auto error = holdfast::find_foreign_ending(*output.format, output.path)) {
+        return fmt::format("{} {}: {}", output.option, output.path, error->message);
+      }
     }
   }
   return std::nullopt;
 }
 
-bool complain_of_outputs(std::span<const std::string> inputs,
-                         std::initializer_list<Output> outputs) {
+bool complain_of_outputs(std::span<const std::string> inputs, const Outputs& outputs) {
   auto fault = find_clash(inputs, outputs);
   if (!fault) {
     fault = find_foreign_ending(outputs);
@@ -174,11 +130,12 @@ bool complain_of_outputs(std::span<const std::string> inputs,
   if (fault) {
     fmt::print(stderr, "holdfast: {}\n", io::one_line(*fault));
   }
-  takes_standard_output = std::ranges::any_of(
-      outputs, [](const Output& output) { return is_standard_output(output.path); });
   return fault.has_value();
 }
 
-bool leaves_standard_output() { return !takes_standard_output; }
+bool leaves_standard_output(const Outputs& outputs) {
+  return std::ranges::none_of(outputs,
+                              [](const Output& output) { return is_standard_output(output.path); });
+}
 
 }  // namespace holdfast::cli

@@ -2,36 +2,38 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "holdfast/file_ending.hpp"
 
 /// Files that would overwrite each other.
 namespace holdfast::cli {
 
 struct Output {
-  std::string_view option;  ///< As it is called on the command line.
-  std::string_view path;    ///< "-" is standard output; empty if there is none.
+  std::string_view option;                ///< As it is called on the command line.
+  std::string_view path;                  ///< "-" is standard output; empty if there is none.
+  std::optional<FileFormat> format = {};  ///< That its ending must not deny.
 };
+
+using Outputs = std::vector<Output>;
 
 /// What is wrong if an output is an input, or two outputs are one: by whatever spelling, link or
 /// further name, or because standard output goes there; or if standard input is named twice.
 /// Nothing if all is well. Of devices only standard output counts: /dev/null may be given twice.
-std::optional<std::string> find_clash(std::span<const std::string> inputs,
-                                      std::initializer_list<Output> outputs);
+std::optional<std::string> find_clash(std::span<const std::string> inputs, const Outputs& outputs);
 
-/// What is wrong if the name of an output ends as files of another format do: what is written into
-/// arm.png as SVG is read by nobody. Other endings, and none, are free.
-std::optional<std::string> find_foreign_ending(std::initializer_list<Output> outputs);
+/// What is wrong if the name of an output ends as files of another format do.
+std::optional<std::string> find_foreign_ending(const Outputs& outputs);
 
 /// Prints either as wrong usage; false if there is none.
-bool complain_of_outputs(std::span<const std::string> inputs,
-                         std::initializer_list<Output> outputs);
+bool complain_of_outputs(std::span<const std::string> inputs, const Outputs& outputs);
 
-/// Whether the run's text goes to standard output: none of the outputs that
-/// complain_of_outputs() was asked about goes there, as one that does is all that may be there.
-bool leaves_standard_output();
+/// Whether the run's text goes to standard output: none of the outputs goes there, as one that does
+/// is all that may be there.
+bool leaves_standard_output(const Outputs& outputs);
 
 }  // namespace holdfast::cli

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "file_clash.hpp"
 
 namespace holdfast::cli {
 namespace {
@@ -18,6 +19,9 @@ struct GenerateArguments {
 int run(const GenerateArguments& options) {
   if (options.size < 0) {
     fmt::print(stderr, "holdfast: the size {} is not allowed: it is 1 or more\n", options.size);
+    return kExitUsage;
+  }
+  if (complain_of_outputs({}, {{{"--output", options.to, FileFormat::kStructure}}})) {
     return kExitUsage;
   }
   const auto document = generate(options.family, static_cast<std::size_t>(options.size));

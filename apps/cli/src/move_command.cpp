@@ -30,6 +30,11 @@ struct MoveArguments {
   std::string steps;
   std::string json;
   std::string verified;
+
+  /// Of files, each with its option.
+  Outputs outputs() const {
+    return {{"--output", steps, FileFormat::kHoldfastJson}, {"--json", json, FileFormat::kJson}};
+  }
 };
 
 /// The box that "X,Y,Z:X,Y,Z" says, by its two corners in any order; none if it is no box.
@@ -79,7 +84,7 @@ int show(const MoveArguments& options, const io::MoveReport& report) {
   if (!options.json.empty() && !write_or_complain(options.json, io::move_json(report))) {
     return kExitBadInput;
   }
-  if (!options.is_quiet && leaves_standard_output()) {
+  if (!options.is_quiet && leaves_standard_output(options.outputs())) {
     fmt::print("{}", io::move_text(report));
   }
   return outcome_code(report.plan.outcome);
@@ -91,18 +96,13 @@ int verify(const MoveArguments& options, const MoveRequest& request, const io::D
   if (!text) {
     return fail(text.error(), options.verified);
   }
-  const auto check = verify_moves(start, target, request, text.value());
+  const auto check = verify_moves(named(start, options.start), named(target, options.target),
+                                  request, text.value());
   if (!check) {
     return fail(check.error(), options.verified);
   }
-  if (!options.is_quiet && check.value().target) {
-    fmt::print("PROVED      the target itself is not safe: {}\n",
-               verdict::name(*check.value().target));
-  } else if (!options.is_quiet) {
-    fmt::print("PROVED      {} inside, {} out of {} judged anew, none safe\n",
-               host::counted(check.value().shape_count, "shape"),
-               host::counted(check.value().unsafe_count, "move"),
-               check.value().shape_count == 1 ? "it" : "them");
+  if (!options.is_quiet) {
+    fmt::print("{}", proved_text(check.value()));
   }
   return kExitSafe;
 }
@@ -141,8 +141,7 @@ MoveRequest request_of(const MoveArguments& options, Progress& progress) {
 
 int run(const MoveArguments& options) {
   const std::array<std::string, 3> inputs = {options.start, options.target, options.verified};
-  if (complain_of_outputs({inputs.data(), options.verified.empty() ? 2U : 3U},
-                          {{"--output", options.steps}, {"--json", options.json}})) {
+  if (complain_of_outputs({inputs.data(), options.verified.empty() ? 2U : 3U}, options.outputs())) {
     return kExitUsage;
   }
   const auto start = read(options.start, "the robot", options.reading);

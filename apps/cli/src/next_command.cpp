@@ -24,6 +24,11 @@ struct NextArguments {
   bool is_bonded = false;
   int thread_count = 0;
   double memory_gb = 4;
+
+  /// Of files, each with its option.
+  Outputs outputs() const {
+    return {{"--json", json, FileFormat::kJson}, {"--svg", svg, FileFormat::kSvg}};
+  }
 };
 
 bool write_files(const NextArguments& options, const Structure& structure, const NextResult& result,
@@ -43,7 +48,7 @@ bool write_files(const NextArguments& options, const Structure& structure, const
 }
 
 int run(const NextArguments& options) {
-  if (complain_of_outputs({&options.file, 1}, {{"--json", options.json}, {"--svg", options.svg}})) {
+  if (complain_of_outputs({&options.file, 1}, options.outputs())) {
     return kExitUsage;
   }
   const auto structure = load_with_notes(options.file, options.reading, options.thread_count);
@@ -63,7 +68,7 @@ int run(const NextArguments& options) {
                                         host::counted(count, "place"));
                    });
                  }});
-  if (!options.is_quiet && leaves_standard_output()) {
+  if (!options.is_quiet && leaves_standard_output(options.outputs())) {
     fmt::print("{}", next_text(structure.value(), result, options.report));
   }
   if (!write_files(options, structure.value(), result, check_options)) {

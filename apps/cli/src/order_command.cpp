@@ -35,6 +35,13 @@ struct OrderArguments {
   std::string steps;
   std::string json;
   std::string certificate;
+
+  /// Of files, each with its option.
+  Outputs outputs() const {
+    return {{"--output", steps, FileFormat::kHoldfastJson},
+            {"--json", json, FileFormat::kJson},
+            {"--certificate", certificate, FileFormat::kJson}};
+  }
 };
 
 /// The cell that "X,Y,Z" says; none if it is no cell.
@@ -122,14 +129,6 @@ int outcome_code(plan::OrderOutcome outcome) {
   return kExitUndecided;
 }
 
-/// The target with a name: that of its file where it has none.
-io::Document named(io::Document target, const std::string& file) {
-  if (target.name.empty() && file != "-") {
-    target.name = std::filesystem::path(file).stem().string();
-  }
-  return target;
-}
-
 /// Writes what is asked for; the exit code is that of a file that cannot be written, or the
 /// answer's.
 int show(const OrderArguments& options, const io::OrderReport& report) {
@@ -158,7 +157,7 @@ int show(const OrderArguments& options, const io::OrderReport& report) {
   if (!options.json.empty() && !write_or_complain(options.json, io::order_json(report))) {
     return kExitBadInput;
   }
-  if (!options.is_quiet && leaves_standard_output()) {
+  if (!options.is_quiet && leaves_standard_output(options.outputs())) {
     const bool is_way_shown = has_way && options.steps.empty() && options.json.empty();
     fmt::print("{}{}", io::order_text(report), is_way_shown ? io::order_way_text(report) : "");
   }
@@ -167,10 +166,7 @@ int show(const OrderArguments& options, const io::OrderReport& report) {
 
 int run(const OrderArguments& options) {
   const std::array<std::string, 2> inputs = {options.target, options.start};
-  if (complain_of_outputs({inputs.data(), options.start.empty() ? 1U : 2U},
-                          {{"--output", options.steps},
-                           {"--json", options.json},
-                           {"--certificate", options.certificate}})) {
+  if (complain_of_outputs({inputs.data(), options.start.empty() ? 1U : 2U}, options.outputs())) {
     return kExitUsage;
   }
   if ((options.reach == "surface") != !options.source.empty()) {

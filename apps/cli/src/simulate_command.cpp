@@ -45,6 +45,14 @@ struct SimulateArguments {
   bool judges_stages = false;
   bool asks_next = false;
   bool is_quiet = false;
+
+  /// Of files, each with its option.
+  Outputs outputs() const {
+    return {{"--json", json, FileFormat::kJson},
+            {"--trace", trace},
+            {"--story", story},
+            {"--svg", svg, FileFormat::kSvg}};
+  }
 };
 
 /// A time given in seconds, or in rounds where ticks have no length.
@@ -105,10 +113,7 @@ class SimulateRun {
     simulation_.method = *method;
     simulation_.seed = options_.seed;
     add_noise();
-    if (complain_of_outputs({&options_.file, 1}, {{"--json", options_.json},
-                                                  {"--trace", options_.trace},
-                                                  {"--story", options_.story},
-                                                  {"--svg", options_.svg}})) {
+    if (complain_of_outputs({&options_.file, 1}, options_.outputs())) {
       return kExitUsage;
     }
     if (options_.takes_steps || options_.judges_stages) {
@@ -164,7 +169,7 @@ class SimulateRun {
     if (!simulated) {
       return fail(simulated.error(), options_.file);
     }
-    if (!options_.is_quiet && leaves_standard_output()) {
+    if (!options_.is_quiet && leaves_standard_output(options_.outputs())) {
       fmt::print("{}", simulated_next_text(structure.value(), simulated.value()));
     }
     return write_next(structure.value(), simulated.value()) ? exit_code_of(simulated.value().next)
@@ -211,7 +216,7 @@ class SimulateRun {
       return fail(stages.error(), options_.file);
     }
     const verdict::Verdict verdict = stages.value().verdict();
-    if (!options_.is_quiet && leaves_standard_output()) {
+    if (!options_.is_quiet && leaves_standard_output(options_.outputs())) {
       fmt::print("{} {}\n{}", banner(verdict), io::one_line(file.name),
                  simulated_stages_text(file, stages.value(), text_options()));
     }
@@ -231,7 +236,7 @@ class SimulateRun {
       return fail(steps.error(), options_.file);
     }
     const verdict::Verdict worst = worst_verdict(steps.value());
-    if (!options_.is_quiet && leaves_standard_output()) {
+    if (!options_.is_quiet && leaves_standard_output(options_.outputs())) {
       fmt::print("{} {}\n{}", banner(worst), io::one_line(file.name),
                  simulated_steps_text(file, steps.value(), text_options()));
     }
@@ -319,7 +324,7 @@ class SimulateRun {
 
   /// False if a file cannot be written.
   bool show(const Structure& structure, const CheckResult& exact, const DistributedRun& run) const {
-    const bool is_silent = options_.is_quiet || !leaves_standard_output();
+    const bool is_silent = options_.is_quiet || !leaves_standard_output(options_.outputs());
     return show_run(options_, is_silent, structure, exact, run, run);
   }
 

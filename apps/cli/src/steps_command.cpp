@@ -26,6 +26,14 @@ struct StepsArguments {
   bool ends_when_unsafe = false;
   bool is_certificate = false;
   int thread_count = 0;
+
+  /// Of files, each with its option.
+  Outputs outputs() const {
+    return {{"--json", json, FileFormat::kJson},
+            {"--svg", svg, FileFormat::kSvg},
+            {"--html", html, FileFormat::kHtml},
+            {"--vtk", vtk, FileFormat::kPvd}};
+  }
 };
 
 StepsOptions judging(const StepsArguments& options, const StepsFile& file, Progress& progress,
@@ -74,26 +82,6 @@ base::Result<model::RobotSpec> read_target(const StepsArguments& options) {
   return read ? io::order_target(read.value().document) : read.error();
 }
 
-/// Of which robot there is no order, and with which steps.
-std::string proved_words(const ProvedOrder& proved) {
-  const plan::OrderTask& task = proved.task;
-  std::string steps = fmt::format("{} at a time", host::counted(task.group_size, "module"));
-  if (task.group_size > 1) {
-    steps = "up to " + steps;
-  }
-  if (task.rule.reach == plan::Reach::kLine) {
-    steps += ", each straight in";
-  } else if (task.rule.reach == plan::Reach::kSurface && task.rule.source) {
-    steps += ", each along the surface from " + model::text(*task.rule.source);
-  }
-  const std::string start =
-      task.start.empty() ? (task.target.fixed.empty() ? "any single module" : "the fixed modules")
-                         : fmt::format("{} of it", host::counted(task.start.size(), "module"));
-  return fmt::format("  robot       {}, {}\n  from        {}\n  steps       {}\n",
-                     proved.name.empty() ? "without a name" : io::one_line(proved.name),
-                     host::counted(task.target.existing.size(), "module"), start, steps);
-}
-
 /// Replays the certificate of an order that does not exist.
 int run_certificate(const StepsArguments& options) {
   std::optional<model::RobotSpec> target;
@@ -113,15 +101,7 @@ int run_certificate(const StepsArguments& options) {
     return fail(check.error(), options.file);
   }
   if (!options.is_quiet) {
-    const plan::CertificateCheck& replayed = check.value().check;
-    const std::size_t blocked_count = replayed.blocked_count;
-    fmt::print(
-        "PROVED      there is no safe order that keeps the robot in one piece: {} replayed, and "
-        "{}\n{}",
-        host::counted(replayed.state_count, "state"),
-        blocked_count == 0 ? "no step leads any further"
-                           : fmt::format("{} just beyond, none of which is safe", blocked_count),
-        proved_words(check.value()));
+    fmt::print("{}", proved_text(check.value()));
   }
   return kExitSafe;
 }
@@ -173,11 +153,7 @@ int run(const StepsArguments& options) {
     return kExitUsage;
   }
   const std::vector<std::string> inputs = {options.file};
-  if (complain_of_outputs(inputs, {{"--json", options.json},
-                                   {"--svg", options.svg},
-                                   {"--html", options.html},
-                                   {"--vtk", options.vtk}}) ||
-      complain_of_series(options)) {
+  if (complain_of_series(options) || complain_of_outputs(inputs, options.outputs())) {
     return kExitUsage;
   }
   const auto file = load_steps(options.file, options.reading);
@@ -191,7 +167,7 @@ int run(const StepsArguments& options) {
     return fail(result.error(), options.file);
   }
   const verdict::Verdict verdict = result.value().judgement.verdict();
-  if (!options.is_quiet && leaves_standard_output()) {
+  if (!options.is_quiet && leaves_standard_output(options.outputs())) {
     fmt::print("{} {}\n{}", banner(verdict), io::one_line(file.value().name),
                steps_text(file.value(), result.value()));
   }

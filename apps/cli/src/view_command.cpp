@@ -52,7 +52,7 @@ int show(const std::string& page, const std::string& out, bool stays_closed) {
 }
 
 int run(const ViewArguments& options) {
-  if (complain_of_outputs({&options.file, 1}, {{"--out", options.out}})) {
+  if (complain_of_outputs({&options.file, 1}, {{{"--out", options.out, FileFormat::kHtml}}})) {
     return kExitUsage;
   }
   const auto structure = load_with_notes(options.file, options.reading);

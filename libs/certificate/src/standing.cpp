@@ -45,6 +45,14 @@ class Plan {
     return side.low() > 0;
   }
 
+  /// Whether the centre of mass surely lies further along a direction than a corner.
+  bool is_beyond(const Corner& corner, double along_x, double along_y) const {
+    const Ball count(count_);
+    const Ball x = Ball(sum_x_) - count * place(corner.x, corner.side_x);
+    const Ball y = Ball(sum_y_) - count * place(corner.y, corner.side_y);
+    return (Ball(along_x) * x + Ball(along_y) * y).low() > 0;
+  }
+
  private:
   Ball place(double centre, int side) const {
     return Ball(centre) + Ball(static_cast<double>(side)) * half_width_;
@@ -80,12 +88,13 @@ std::vector<Corner> hull_of(std::vector<Corner> corners, const Plan& plan) {
 }  // namespace
 
 /// Whatever the chain of corners is: seen from a point on the left of all its edges it goes around
-/// at least once, so the point lies strictly inside the corners' convex hull.
-bool stands(const Certificate& certificate, const Structure& structure,
-            const Constants& constants) {
+/// at least once, so the point lies strictly inside the corners' convex hull. And whatever the
+/// direction is, the point lies outside if it lies further along it than all corners.
+Standing standing_of(const Certificate& certificate, const Structure& structure,
+                     const Constants& constants) {
   const auto is_fixed = [](const Module& module) { return module.is_fixed; };
   if (std::any_of(certificate.modules.begin(), certificate.modules.end(), is_fixed)) {
-    return true;
+    return {.is_inside = true};
   }
   const Plan plan(certificate, constants);
   std::vector<Corner> corners;
@@ -98,12 +107,22 @@ bool stands(const Certificate& certificate, const Structure& structure,
       }
     }
   }
-  const std::vector<Corner> hull = hull_of(std::move(corners), plan);
-  bool is_inside = hull.size() >= 3;
+  const std::vector<Corner> hull = hull_of(corners, plan);
+  Standing standing{.is_inside = hull.size() >= 3};
   for (std::size_t i = 0; i < hull.size(); ++i) {
-    is_inside = is_inside && plan.is_left(hull[i], hull[(i + 1) % hull.size()]);
+    const Corner& a = hull[i];
+    const Corner& b = hull[(i + 1) % hull.size()];
+    const bool is_left = plan.is_left(a, b);
+    standing.is_inside = standing.is_inside && is_left;
+    const double right_x = plan.y(b) - plan.y(a);
+    const double right_y = plan.x(a) - plan.x(b);
+    standing.is_outside =
+        standing.is_outside ||
+        (!is_left && std::all_of(corners.begin(), corners.end(), [&](const Corner& corner) {
+          return plan.is_beyond(corner, right_x, right_y);
+        }));
   }
-  return is_inside;
+  return standing;
 }
 
 }  // namespace holdfast::certificate

@@ -6,8 +6,14 @@
 
 namespace holdfast::certificate {
 
-/// Whether the centre of mass surely lies strictly inside the support polygon, or a fixed module
-/// holds the robot.
-bool stands(const Certificate& certificate, const Structure& structure, const Constants& constants);
+/// Where the centre of mass surely lies, strictly, of the support polygon; neither within rounding
+/// of its border.
+struct Standing {
+  bool is_inside = false;  ///< Or a fixed module holds the robot.
+  bool is_outside = false;
+};
+
+Standing standing_of(const Certificate& certificate, const Structure& structure,
+                     const Constants& constants);
 
 }  // namespace holdfast::certificate

@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <cstdlib>
 
 #include "holdfast/certificate/certificate.hpp"
+#include "sha256.hpp"
 
 namespace holdfast::certificate {
 namespace {
@@ -79,6 +81,45 @@ std::uint64_t checksum(std::string_view text) {
 
 constexpr std::string_view kEnd = "\nend ";
 
+/// Whether a name can be shown on one line: without control characters, of which the second set is
+/// C2 80 to C2 9F.
+bool is_one_line(std::string_view name) {
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(name[i]);
+    const bool is_second = i > 0 && name[i - 1] == '\xC2' && byte < 0xA0;
+    if (byte < 0x20 || byte == 0x7F || is_second) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool is_ground(const Certificate& certificate, const Module& module) {
+  return !module.is_fixed && module.cell[2] == certificate.support_z;
+}
+
+/// The twelve numbers and the support level.
+void append_material(std::string& text, const Certificate& certificate) {
+  for (const auto& [name, value] : kNumbers) {
+    text += name;
+    text += ' ';
+    append(text, certificate.material.*value);
+    text += '\n';
+  }
+  text += "support_z ";
+  append(text, certificate.support_z);
+  text += '\n';
+}
+
+/// Its cell, and what holds it.
+void append_module(std::string& text, const Certificate& certificate, const Module& module) {
+  for (const std::int32_t coordinate : module.cell) {
+    append(text, coordinate);
+    text += ' ';
+  }
+  text += module.is_fixed ? "fixed" : is_ground(certificate, module) ? "ground" : "free";
+}
+
 void append_state(std::string& text, const State& state) {
   text += state.is_pressed ? " pressed " : " open ";
   text += kSigns[state.tilt_x + 1];
@@ -102,6 +143,17 @@ class Words {
     const std::string_view word = text_.substr(0, length);
     text_.remove_prefix(length);
     return word;
+  }
+
+  /// All that is left of the line, without the blank in front of it.
+  std::string_view line() {
+    const std::size_t length = std::min(text_.find('\n'), text_.size());
+    std::string_view rest = text_.substr(0, length);
+    text_.remove_prefix(length);
+    if (!rest.empty() && is_blank(rest.front())) {
+      rest.remove_prefix(1);
+    }
+    return rest;
   }
 
   bool is_at_end() { return next().empty(); }
@@ -188,7 +240,7 @@ State read_state(Words& words) {
   return state;
 }
 
-Module read_module(Words& words, std::int32_t support_z) {
+Module read_module(Words& words, const Certificate& certificate) {
   Module module;
   for (std::int32_t& coordinate : module.cell) {
     coordinate = words.number<std::int32_t>("a coordinate");
@@ -201,16 +253,23 @@ Module read_module(Words& words, std::int32_t support_z) {
   if (kind == "ground") {
     module.state = read_state(words);
   }
-  const bool is_ground = !module.is_fixed && module.cell[2] == support_z;
-  if (kind != "fixed" && kind != (is_ground ? "ground" : "free")) {
-    words.fail(is_ground ? "'ground' or 'fixed'" : "'free' or 'fixed'");
+  const bool has_facet = is_ground(certificate, module);
+  if (kind != "fixed" && kind != (has_facet ? "ground" : "free")) {
+    words.fail(has_facet ? "'ground' or 'fixed'" : "'free' or 'fixed'");
   }
   return module;
 }
 
 void read_head(Words& words, Certificate& certificate) {
   words.expect(kTitle);
-  words.expect("1");
+  if (words.next() != "2") {
+    words.fail("version 2; 'holdfast check --certificate' makes older certificates anew");
+  }
+  words.expect("robot");
+  certificate.name = words.line();
+  if (!is_one_line(certificate.name)) {
+    words.fail("a name without control characters");
+  }
   words.expect("law");
   const std::string_view law = words.next();
   bool is_known = false;
@@ -233,32 +292,45 @@ void read_head(Words& words, Certificate& certificate) {
   certificate.bits = words.number<int>("a number");
 }
 
+void append_planned(std::string& text, const Certificate& certificate) {
+  text += "\nplanned ";
+  append(text, certificate.planned_count);
+}
+
+void read_modules(Words& words, Certificate& certificate) {
+  const auto count = words.number<std::size_t>("how many");
+  for (std::size_t i = 0; i < count && words.fault().empty(); ++i) {
+    certificate.modules.push_back(read_module(words, certificate));
+  }
+}
+
 }  // namespace
 
 std::string write(const Certificate& certificate) {
-  std::string text = std::string(kTitle) + " 1\nlaw ";
+  std::string text = std::string(kTitle) + " 2\nrobot ";
+  text += is_one_line(certificate.name) ? certificate.name : "";
+  text += "\nlaw ";
   text += kLaws[static_cast<std::size_t>(certificate.law)];
-  for (const auto& [name, value] : kNumbers) {
-    text += '\n' + std::string(name) + ' ';
-    append(text, certificate.material.*value);
-  }
-  text += "\nsupport_z ";
-  append(text, certificate.support_z);
-  text += "\nbits ";
+  text += '\n';
+  append_material(text, certificate);
+  text += "bits ";
   append(text, certificate.bits);
-  text += "\nmodules ";
-  append(text, certificate.modules.size());
-  for (const Module& module : certificate.modules) {
-    text += '\n';
-    for (const std::int32_t coordinate : module.cell) {
-      append(text, coordinate);
-      text += ' ';
+  const std::size_t existing_count = certificate.modules.size() - certificate.planned_count;
+  text += "\nexisting ";
+  append(text, existing_count);
+  for (std::size_t i = 0; i < certificate.modules.size(); ++i) {
+    if (i == existing_count) {
+      append_planned(text, certificate);
     }
-    const bool is_ground = !module.is_fixed && module.cell[2] == certificate.support_z;
-    text += module.is_fixed ? "fixed" : is_ground ? "ground" : "free";
-    if (is_ground) {
+    const Module& module = certificate.modules[i];
+    text += '\n';
+    append_module(text, certificate, module);
+    if (is_ground(certificate, module)) {
       append_state(text, module.state);
     }
+  }
+  if (certificate.planned_count == 0) {
+    append_planned(text, certificate);
   }
   text += "\nfields ";
   append(text, certificate.fields.size());
@@ -282,11 +354,13 @@ Reading read(std::string_view text) {
   Certificate& certificate = reading.certificate;
   Words words(text);
   read_head(words, certificate);
-  words.expect("modules");
-  const auto count = words.number<std::size_t>("how many");
-  for (std::size_t i = 0; i < count && words.fault().empty(); ++i) {
-    certificate.modules.push_back(read_module(words, certificate.support_z));
-  }
+  words.expect("existing");
+  read_modules(words, certificate);
+  const std::size_t existing_count = certificate.modules.size();
+  words.expect("planned");
+  read_modules(words, certificate);
+  const std::size_t count = certificate.modules.size();
+  certificate.planned_count = count - existing_count;
   words.expect("fields");
   const auto field_count = words.number<std::size_t>("how many");
   for (std::size_t field = 0; field < field_count && words.fault().empty(); ++field) {
@@ -307,6 +381,33 @@ Reading read(std::string_view text) {
   }
   reading.fault = words.fault();
   return reading;
+}
+
+std::string digest(const Certificate& certificate) {
+  const std::size_t existing_count = certificate.modules.size() - certificate.planned_count;
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < certificate.modules.size(); ++i) {
+    std::string& line = lines.emplace_back();
+    append_module(line, certificate, certificate.modules[i]);
+    line += i < existing_count ? " existing\n" : " planned\n";
+  }
+  std::sort(lines.begin(), lines.end());
+  std::string text;
+  append_material(text, certificate);
+  for (const std::string& line : lines) {
+    text += line;
+  }
+  return sha256(text);
+}
+
+std::string robot_words(std::string_view name, std::size_t module_count,
+                        std::size_t planned_count) {
+  std::string words(name.empty() ? "without a name" : name);
+  words += ", " + std::to_string(module_count) + (module_count == 1 ? " module" : " modules");
+  if (planned_count > 0) {
+    words += ", " + std::to_string(planned_count) + " of them planned";
+  }
+  return words;
 }
 
 }  // namespace holdfast::certificate

@@ -70,8 +70,9 @@ class Verifier {
     Verification result;
     result.connection_count = structure_.beams().size();
     result.facet_count = structure_.facets().size();
-    result.is_standing =
-        stands(certificate_, structure_, constants_) || certificate_.law == Law::kBonded;
+    const Standing standing = standing_of(certificate_, structure_, constants_);
+    result.is_standing = standing.is_inside || certificate_.law == Law::kBonded;
+    result.topples = standing.is_outside;
     result.reason = prove();
     if (result.reason.empty()) {
       bound_ratio(result);

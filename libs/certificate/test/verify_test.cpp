@@ -135,6 +135,25 @@ TEST(Verify, refuses_what_is_no_robot_or_too_large) {
             "there is no module");
 }
 
+/// An arm on a foot under the first of its modules: the centre is this far from the foot's, whose
+/// edge is half a pitch away. Bonded supports hold it all the same.
+TEST(Verify, knows_on_which_side_of_the_edge_the_centre_is) {
+  for (const int count : {1, 2, 3, 7}) {
+    Certificate made = cantilever(count - 1);
+    made.modules[0].is_fixed = false;
+    for (std::size_t i = 1; i < made.modules.size(); ++i) {
+      made.modules[i].cell = {static_cast<std::int32_t>(i) - 1, 0, 1};
+    }
+    made.support_z = 0;
+    const Verification found = verify(made);
+    const double centre = count > 1 ? 0.5 * (count - 1) * (count - 2) / count : 0;
+    EXPECT_EQ(found.topples, centre > 0.5) << count;
+    EXPECT_TRUE(found.is_standing) << "bonded";
+    made.modules[0].is_fixed = true;
+    EXPECT_FALSE(verify(made).topples) << count;
+  }
+}
+
 TEST(Text, says_the_same_when_it_is_read_again) {
   Certificate made = cantilever(5);
   bend(made);
@@ -169,10 +188,18 @@ TEST(Text, refuses_every_changed_byte) {
 TEST(Text, ends_whatever_the_counts_say) {
   Certificate made = cantilever(3);
   std::string text = write(made);
-  text.replace(text.find("modules 4"), 9, "modules 4000000000");
+  text.replace(text.find("existing 4"), 10, "existing 4000000000");
   EXPECT_NE(read(text).fault, "");
   EXPECT_NE(read("").fault, "");
   EXPECT_NE(read("holdfast-certificate 2").fault, "");
+}
+
+TEST(Text, says_how_an_older_version_is_made_anew) {
+  Certificate made = cantilever(3);
+  std::string text = write(made);
+  text.replace(text.find(" 2\n"), 2, " 1");
+  EXPECT_NE(read(text).fault.find("version 2; 'holdfast check --certificate' makes"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -96,9 +96,7 @@ base::Result<Image> load_image(const std::string& path) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream) {
     return base::Error{.code = base::ErrorCode::kUnreadable,
-                       .message =
-                           "no firmware image is here; './dev firmware' in holdfast's sources "
-                           "builds one, '--image FILE' names it"};
+                       .message = "the firmware image cannot be read"};
   }
   const std::vector<std::uint8_t> file{std::istreambuf_iterator<char>(stream), {}};
   const auto header = value_at<Elf32_Ehdr>(file, 0);

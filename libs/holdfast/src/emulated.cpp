@@ -4,6 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <system_error>
+
 #include "distributed_parts.hpp"
 #include "report_entry.hpp"
 
@@ -43,15 +46,32 @@ void write_firmware(io::JsonStream& json, const EmulatedRun& run) {
 
 }  // namespace
 
-base::Result<EmulatedRun> emulate(const Structure& structure, const CheckResult& exact,
-                                  const std::string& image_path,
-                                  const emulator::EmulationOptions& options,
-                                  const EmulationProgress& progress) {
+std::optional<base::Error> find_emulator_fault(const std::string& image) {
   if (!emulator::is_available()) {
     return base::Error{.code = base::ErrorCode::kUnsupported,
                        .message =
                            "this holdfast was built without Unicorn and cannot emulate; "
-                           "'./dev firmware' installs it and builds one that can"};
+                           "'./dev firmware' in its sources installs it and builds one that can"};
+  }
+  std::error_code code;
+  if (!std::filesystem::is_regular_file(image, code)) {
+    return base::Error{.code = base::ErrorCode::kUnreadable,
+                       .message =
+                           "no firmware image is here; the package holdfast-firmware has it, "
+                           "'./dev firmware' in holdfast's sources builds it, '--image FILE' "
+                           "names another one",
+                       .where = {}};
+  }
+  return std::nullopt;
+}
+
+base::Result<EmulatedRun> emulate(const Structure& structure, const CheckResult& exact,
+                                  const std::string& image_path,
+                                  const emulator::EmulationOptions& options,
+                                  const EmulationProgress& progress) {
+  if (auto missing = find_emulator_fault(image_path)) {
+    missing->where = io::one_line(image_path);
+    return *missing;
   }
   if (const auto fault = emulator::find_options_fault(structure.robot, options)) {
     return base::Error{.code = base::ErrorCode::kBadInput, .message = *fault, .where = {}};

@@ -211,7 +211,7 @@ std::vector<CheckResult> check_many(std::span<const model::Robot* const> robots,
   return results;
 }
 
-base::Result<std::string> certificate_text(const CheckResult& result) {
+base::Result<std::string> certificate_text(const Structure& structure, const CheckResult& result) {
   const bool is_there = result.proof && !result.proof->certificate.modules.empty();
   if (!is_there) {
     return base::Error{.code = base::ErrorCode::kBadInput,
@@ -219,7 +219,9 @@ base::Result<std::string> certificate_text(const CheckResult& result) {
                                       ? "no certificate: " + result.proof->verification.reason
                                       : "no certificate, as no proof was wanted"};
   }
-  return certificate::write(result.proof->certificate);
+  certificate::Certificate certificate = result.proof->certificate;
+  certificate.name = io::one_line(structure.name);
+  return certificate::write(certificate);
 }
 
 void write_report_json(std::ostream& out, const Structure& structure, const CheckResult& result,

@@ -38,7 +38,8 @@ base::Result<io::MoveReport> seek_moves(const io::Document& start, const io::Doc
   options.solver.thread_count = request.thread_count;
   auto plan = plan::find_moves(task.value(), options);
   if (!plan) {
-    return plan.error();
+    base::Error error = io::with_other_lattice(plan.error(), start);
+    return error.message == plan.error().message ? io::with_other_lattice(error, target) : error;
   }
   io::MoveReport report{
       .start = start, .task = std::move(task).value(), .plan = std::move(plan).value()};
@@ -46,11 +47,9 @@ base::Result<io::MoveReport> seek_moves(const io::Document& start, const io::Doc
   return report;
 }
 
-base::Result<plan::MoveCertificateCheck> verify_moves(const io::Document& start,
-                                                      const io::Document& target,
-                                                      const MoveRequest& request,
-                                                      std::string_view report) {
-  const auto task = task_of(start, target, request);
+base::Result<ProvedMoves> verify_moves(const io::Document& start, const io::Document& target,
+                                       const MoveRequest& request, std::string_view report) {
+  auto task = task_of(start, target, request);
   if (!task) {
     return task.error();
   }
@@ -60,7 +59,15 @@ base::Result<plan::MoveCertificateCheck> verify_moves(const io::Document& start,
   }
   solver::EquilibriumOptions options;
   options.thread_count = request.thread_count;
-  return plan::verify(certificate.value(), options);
+  const auto check = plan::verify(certificate.value(), options);
+  if (!check) {
+    return check.error();
+  }
+  return ProvedMoves{.start_name = start.name,
+                     .target_name = target.name,
+                     .task = std::move(task).value(),
+                     .is_backward = certificate.value().is_backward,
+                     .check = check.value()};
 }
 
 }  // namespace holdfast

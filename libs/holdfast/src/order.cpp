@@ -33,7 +33,7 @@ base::Result<io::OrderReport> seek_order(const io::Document& target, const Order
        .is_exact = request.is_exact || report.task.target.existing.size() <= kExactModuleCount,
        .thread_count = request.thread_count});
   if (!result) {
-    return result.error();
+    return io::with_other_lattice(result.error(), target);
   }
   const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
   report.result = std::move(result).value();

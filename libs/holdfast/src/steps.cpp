@@ -58,7 +58,7 @@ base::Result<StepsResult> judge_steps(const StepsFile& file, const StepsOptions&
     if (!error.where.empty()) {
       error.where = io::step_pointer(file.document, std::stoul(error.where));
     }
-    return error;
+    return io::with_other_lattice(std::move(error), file.document);
   }
   StepsResult result{.judgement = std::move(judged).value()};
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -37,6 +37,23 @@ void warn_of_entry(Reading& reading, const Entry& entry, Names known) {
   }
 }
 
+/// What an attribute of <parameters> that VisibleSim does not know was meant to be, if it is called
+/// as the material's numbers are elsewhere: a mass that went unread would cost a verdict.
+std::optional<std::string> meant_parameter(std::string_view name) {
+  std::vector<std::string_view> keys;
+  std::ranges::transform(model::kMaterialParameters, std::back_inserter(keys),
+                         &model::MaterialParameter::key);
+  const auto meant = known_spelling(name, keys);
+  const auto key = meant ? meant : near_miss(name, keys);
+  if (!key) {
+    return std::nullopt;
+  }
+  const auto* const parameter =
+      std::ranges::find(model::kMaterialParameters, *key, &model::MaterialParameter::key);
+  return parameter->visiblesim != nullptr ? parameter->visiblesim
+                                          : fmt::format("{}' of '<{}>", *key, kOwnElement);
+}
+
 }  // namespace
 
 const std::string* find_attribute(const Attributes& attributes, std::string_view name) {
@@ -232,7 +249,16 @@ void Reading::warn_of_content() {
 void Reading::warn_of_attributes() {
   const auto look_at = [&](const Attributes& attributes, const char* kind, Names known) {
     for (const auto& attribute : attributes) {
-      if (std::ranges::find(known, attribute.first) == known.end()) {
+      const bool is_known = std::ranges::find(known, attribute.first) != known.end();
+      const auto meant = is_known || kind != std::string_view("parameter")
+                             ? std::nullopt
+                             : meant_parameter(attribute.first);
+      if (meant) {
+        fail({base::ErrorCode::kBadInput,
+              fmt::format("the {} {} is unknown: did you mean '{}'?", kind,
+                          excerpt(attribute.first), *meant),
+              ""});
+      } else if (!is_known) {
         note_unknown(fmt::format("the {} {}", kind, excerpt(attribute.first)), attribute.first,
                      known, "kept", [] { return std::string(); });
       }

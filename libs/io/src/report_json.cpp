@@ -232,6 +232,9 @@ void write_proof(JsonStream& json, const ReportEntry& entry) {
   json.member("proved", found.is_proved);
   write_range(json, "load_ratio_range", found.is_proved ? &range : nullptr);
   json.member("reason", found.is_proved ? std::nullopt : std::optional(found.reason));
+  json.member("digest", found.is_proved
+                            ? std::optional(certificate::digest(entry.proof->certificate))
+                            : std::nullopt);
   json.member("solves", entry.proof->solve_count);
   json.member("seconds", entry.proof_seconds);
   json.end_object();

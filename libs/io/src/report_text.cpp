@@ -132,6 +132,7 @@ void write_proof(Out out, const ReportEntry& entry) {
       out, "  proof       the largest load ratio lies between {:.13g} and {:.13g}; {} in {}\n", low,
       high, host::counted(entry.proof->solve_count, "linear solve"),
       time_text(entry.proof_seconds));
+  fmt::format_to(out, "  digest      {}\n", certificate::digest(entry.proof->certificate));
 }
 
 }  // namespace

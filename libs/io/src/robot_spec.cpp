@@ -275,26 +275,29 @@ std::vector<model::Payload> present_payloads(const Document& document) {
 bool is_connected(const Document& document, const base::Lattice& lattice) {
   model::RobotSpec alone{.support_z = std::nullopt, .lattice = lattice};
   std::ranges::transform(document.modules, std::back_inserter(alone.existing), &ModuleEntry::cell);
+  if (!document.steps.empty()) {
+    std::ranges::transform(document.steps.front(), std::back_inserter(alone.existing),
+                           &PlannedEntry::cell);
+  }
   alone.fixed = {alone.existing.front()};
   return model::Robot::create(alone).has_value();
 }
 
-/// A file for VisibleSim does not say its lattice: where another than the one taken connects the
-/// modules, the error names it.
-std::string other_lattice(const Document& document) {
+}  // namespace
+
+base::Error with_other_lattice(base::Error error, const Document& document) {
   if (document.modules.empty() || is_connected(document, document.extension.lattice)) {
-    return "";
+    return error;
   }
   const auto other = std::ranges::find_if(kNamedLattices, [&](const NamedLattice& row) {
     return row.lattice != document.extension.lattice && is_connected(document, row.lattice);
   });
-  return other == kNamedLattices.end()
-             ? ""
-             : fmt::format("; the lattice is {}, in {} it is connected",
-                           lattice_name(document.extension.lattice), other->name);
+  if (other != kNamedLattices.end()) {
+    error.message += fmt::format("; the lattice is {}, in {} it is connected",
+                                 lattice_name(document.extension.lattice), other->name);
+  }
+  return error;
 }
-
-}  // namespace
 
 base::Result<model::RobotSpec> make_spec(const Document& document) {
   if (auto error = find_fault(document)) {
@@ -371,9 +374,7 @@ base::Result<model::Robot> make_robot(const Document& document, int thread_count
   }
   auto robot = model::Robot::create(spec.value(), thread_count);
   if (!robot) {
-    base::Error error = robot.error();
-    error.message += other_lattice(document);
-    return error;
+    return with_other_lattice(robot.error(), document);
   }
   return robot;
 }

@@ -198,6 +198,27 @@ void expect_nothing_beside(XmlReading& reading, const pugi::xml_node& tree) {
   }
 }
 
+/// Numbers of the material that no robot can have, in the words of the file; some follow from the
+/// pitch.
+void expect_possible_numbers(XmlReading& reading, const pugi::xml_node& parameters,
+                             const pugi::xml_node& own) {
+  const model::Material& material = reading.document.material;
+  for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
+    const double value = material.*parameter.value;
+    if (value >= parameter.lowest && value <= parameter.highest) {
+      continue;
+    }
+    const bool is_simulated = parameter.visiblesim != nullptr;
+    const pugi::xml_node node = is_simulated ? parameters : own;
+    const char* const name = is_simulated ? parameter.visiblesim : parameter.key;
+    const bool is_said = static_cast<bool>(node.attribute(name));
+    reading.fail(is_said ? node : parameters,
+                 fmt::format("{} of <{}>{} is {}, allowed is {} to {}", name, node.name(),
+                             is_said ? "" : ", which follows from globalL,", value,
+                             parameter.lowest, parameter.highest));
+  }
+}
+
 void read_roots(XmlReading& reading, const pugi::xml_node& tree, const ReadOptions& options) {
   for (const pugi::xml_node& child : tree.children()) {
     if (!is_one_of(child.name(), {"parameters", "world"})) {
@@ -221,6 +242,7 @@ void read_roots(XmlReading& reading, const pugi::xml_node& tree, const ReadOptio
   read_parameters(reading, parameters);
   read_world(reading, world, options);
   reading.complete_material(where);
+  expect_possible_numbers(reading, parameters, own);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 // Conversion loses nothing: what one format says comes back from the other as an equal document.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -40,9 +41,9 @@ class RandomDocument {
     document.name = text();
     document.description = text();
     document.support_z = coordinate();
-    document.material.mass_kg = number();
-    document.material.moment_x_mm4 = number();
-    document.material.gravity_m_s2 = number();
+    document.material.mass_kg = figure();
+    document.material.moment_x_mm4 = figure();
+    document.material.gravity_m_s2 = figure();
     for (std::uint64_t i = below(6); i > 0; --i) {
       document.modules.push_back({cell(), below(2) == 0, color(), attributes()});
     }
@@ -145,6 +146,12 @@ class RandomDocument {
   std::int32_t coordinate() { return static_cast<std::int32_t>(below(2'000'001)) - 1'000'000; }
 
   base::Cell cell() { return {coordinate(), coordinate(), coordinate()}; }
+
+  /// A number that a material may have, with all its digits.
+  double figure() {
+    const double digits = static_cast<double>(below(std::uint64_t{1} << 52U));
+    return std::ldexp(1 + std::ldexp(digits, -52), static_cast<int>(below(78)) - 39);
+  }
 
   /// Any finite number: sign, exponent and digits at random.
   double number() {
@@ -251,8 +258,17 @@ TEST(Conversion, keeps_every_digit_of_a_number) {
        {0.1, 1.0 / 3, 1e-5, 1e21, 123456789.123456789, -0.0,
         std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max()}) {
     Document document;
-    document.material.contact_gamma = value;
-    document.material.strength_lateral_n = value;
+    document.known_answer = KnownAnswer{
+        .verdict = "safe", .margin_mm = value, .load_ratio_max = std::nullopt, .source = ""};
+    expect_equal_after_conversion(document);
+  }
+  // The ends of what is allowed, which XML is refused beyond, and digits between.
+  for (const double share : {0.0, 1.0 / 3, 0.123456789123456789, 1 - 1e-16, 1.0}) {
+    Document document;
+    for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
+      document.material.*parameter.value = std::min(
+          parameter.highest, parameter.lowest + share * (parameter.highest - parameter.lowest));
+    }
     expect_equal_after_conversion(document);
   }
 }

@@ -5,6 +5,7 @@
 // any case, and the places that errors name.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cctype>
 #include <fstream>
 #include <map>
@@ -14,6 +15,7 @@
 
 #include "document_support.hpp"
 #include "holdfast/base/rng.hpp"
+#include "holdfast/model/material.hpp"
 
 namespace holdfast::io {
 namespace {
@@ -341,6 +343,38 @@ TEST(KnownNames, names_of_visiblesim_are_read_in_any_case) {
     EXPECT_EQ(read.document, expected.document) << text;
     EXPECT_EQ(read.warnings, expected.warnings) << text;
   }
+}
+
+/// Such as mass="61": the robot would be as heavy as Blinky Blocks, whatever the file means.
+TEST(KnownNames, a_number_of_the_material_is_not_lost_by_what_parameters_call_it) {
+  const auto refusal = [](const std::string& name) {
+    const auto read = read_visiblesim("<parameters " + name +
+                                      "=\"1\"/><world><blockList><block position=\"0,0,0\"/>"
+                                      "</blockList></world>");
+    return read ? std::string("read") : read.error().message;
+  };
+  for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
+    const std::string key = parameter.key;
+    const std::string meant = parameter.visiblesim != nullptr ? std::string(parameter.visiblesim)
+                                                              : key + "' of '<holdfast>";
+    std::string capitals = key;
+    std::ranges::transform(capitals, capitals.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    for (const std::string& name : {key, capitals, key + "_", "x" + key}) {
+      EXPECT_NE(refusal(name).find("did you mean '" + meant + "'?"), std::string::npos)
+          << name << ": " << refusal(name);
+    }
+  }
+  for (const auto& [name, meant] :
+       std::map<std::string, std::string>{{"mass", "globalMass"},
+                                          {"pitch", "globalL"},
+                                          {"torsion", "globalJ"},
+                                          {"gravity", "gravity_m_s2' of '<holdfast>"}}) {
+    EXPECT_NE(refusal(name).find("did you mean '" + meant + "'?"), std::string::npos)
+        << refusal(name);
+  }
+  EXPECT_EQ(refusal("nofIterations"), "read");
+  EXPECT_EQ(refusal("colour"), "read");
 }
 
 TEST(KnownNames, two_names_of_visiblesim_that_only_case_tells_apart_are_an_error) {

@@ -105,9 +105,9 @@ TEST(VisibleSim, parameters_are_independent_of_each_other) {
       {"globalGamma", &model::Material::contact_gamma}};
   for (const auto& [name, value] : parameters) {
     model::Material expected;
-    expected.*value = 0.125;
+    expected.*value = 0.0625;
     const ReadDocument result =
-        read("<parameters " + std::string(name) + "=\" 0.125 \"/><world><blockList/></world>");
+        read("<parameters " + std::string(name) + "=\" 0.0625 \"/><world><blockList/></world>");
     EXPECT_EQ(result.document.material, expected) << name;
     EXPECT_TRUE(result.document.parameters.empty()) << name;
     // So small a pitch is noted, and leaves the facets too wide.

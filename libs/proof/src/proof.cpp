@@ -85,6 +85,7 @@ Certificate certificate_of(const model::Robot& robot, const Assessment& assessme
     certificate::Module& copy = made.modules.emplace_back();
     copy.cell = {module.cell.x, module.cell.y, module.cell.z};
     copy.is_fixed = module.support == model::Support::kFixed;
+    made.planned_count += module.is_planned ? 1 : 0;
     if (module.support == model::Support::kGround && made.law != Law::kBonded) {
       const ContactState state = solver::contact_of(robot, assessment.equilibrium, i);
       copy.state = {.is_pressed = state.pressed, .tilt_x = state.tilt_x, .tilt_y = state.tilt_y};

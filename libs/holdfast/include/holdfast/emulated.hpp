@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "holdfast/distributed.hpp"         // IWYU pragma: export
@@ -22,8 +23,12 @@ struct EmulatedRun {
 /// Called now and then; false ends the run.
 using EmulationProgress = std::function<bool(const sim::SimulationResult&)>;
 
-/// Runs the robot's firmware. Errors: this program was built without Unicorn; no image; options
-/// that do not fit the structure.
+/// What is missing to emulate anything at all, and what brings it: this program was built without
+/// Unicorn, or the image is not there.
+std::optional<base::Error> find_emulator_fault(const std::string& image);
+
+/// Runs the robot's firmware. Errors: as of find_emulator_fault(); an image that is damaged;
+/// options that do not fit the structure.
 base::Result<EmulatedRun> emulate(const Structure& structure, const CheckResult& exact,
                                   const std::string& image,
                                   const emulator::EmulationOptions& options,

@@ -194,7 +194,7 @@ std::vector<base::Vec6<double>> ground_forces(const model::Robot& robot, const C
 
 /// The certificate of a check's proof, for holdfast-checker; see docs/formats.md. Errors: there is
 /// none, as nothing could be proved, or no proof was wanted.
-base::Result<std::string> certificate_text(const CheckResult& result);
+base::Result<std::string> certificate_text(const Structure& structure, const CheckResult& result);
 
 struct TextOptions {
   bool has_notes = true;  ///< Whether it lists those of the reader.

@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "holdfast/holdfast.hpp"
@@ -38,10 +39,20 @@ struct MoveRequest {
 base::Result<io::MoveReport> seek_moves(const io::Document& start, const io::Document& target,
                                         const MoveRequest& request = {});
 
+/// What a certificate has proved, and of which robots.
+struct ProvedMoves {
+  std::string start_name;  ///< As the documents say; may be empty, both.
+  std::string target_name;
+  plan::MoveTask task;
+  bool is_backward = false;  ///< As of plan::MoveCertificate.
+  plan::MoveCertificateCheck check;
+};
+
 /// Replays the certificate in a report for the same documents and the same request.
-base::Result<plan::MoveCertificateCheck> verify_moves(const io::Document& start,
-                                                      const io::Document& target,
-                                                      const MoveRequest& request,
-                                                      std::string_view report);
+base::Result<ProvedMoves> verify_moves(const io::Document& start, const io::Document& target,
+                                       const MoveRequest& request, std::string_view report);
+
+/// What is proved, of which robot and under which rules, for people.
+std::string proved_text(const ProvedMoves& proved);
 
 }  // namespace holdfast

@@ -63,4 +63,7 @@ base::Result<ProvedOrder> verify_order_certificate(
     std::string_view text, const std::optional<model::RobotSpec>& target = {},
     int thread_count = 0);
 
+/// What is proved, of which robot and under which rules, for people.
+std::string proved_text(const ProvedOrder& proved);
+
 }  // namespace holdfast

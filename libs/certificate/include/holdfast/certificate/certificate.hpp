@@ -67,11 +67,13 @@ struct Module {
 };
 
 struct Certificate {
+  std::string name;  ///< The robot's, on one line; may be empty.
   Law law = Law::kBonded;
   Material material;
   std::int32_t support_z = 0;
   int bits = 0;
   std::vector<Module> modules;
+  std::size_t planned_count = 0;  ///< So many of `modules`, the last, are planned.
   /// The first: displacements under the weight. Under the regularised law one more for every
   /// facet that tilts, in the modules' order: displacements where its moment is greater by 1.
   std::vector<Field> fields;
@@ -92,6 +94,14 @@ struct Reading {
 
 Reading read(std::string_view text);
 
+/// What tells a robot from all others: SHA-256, hexadecimal, of its material, support level and
+/// modules in any order, as docs/formats.md says. Neither its name nor what is proved changes it.
+std::string digest(const Certificate& certificate);
+
+/// Of which robot something is proved, as all programs say it, "arm, 13 modules, 2 of them
+/// planned".
+std::string robot_words(std::string_view name, std::size_t module_count, std::size_t planned_count);
+
 struct Verification {
   bool is_proved = false;
   std::string reason;     ///< Why not.
@@ -101,6 +111,9 @@ struct Verification {
   /// The centre of mass lies strictly inside the support polygon, or a fixed module holds the
   /// robot.
   bool is_standing = false;
+  /// The centre of mass surely lies beyond the support polygon, and no module is fixed. Under the
+  /// bonded law, by which such a robot stands: it topples if it only rests on the ground.
+  bool topples = false;
   std::size_t facet_count = 0;
 };
 

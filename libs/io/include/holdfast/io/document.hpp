@@ -155,8 +155,12 @@ std::string step_pointer(const Document& document, std::size_t step);
 /// Errors: as of make_spec().
 base::Result<Sequence> make_sequence(const Document& document);
 
-/// The robot with the first step; errors as of make_spec() and model::Robot::create, threads as of
-/// the latter.
+/// The error of a robot that could not be made of the document, with the lattice in which its
+/// modules are connected where they are not in the one taken: files for VisibleSim do not say it.
+base::Error with_other_lattice(base::Error error, const Document& document);
+
+/// The robot with the first step; errors as of make_spec(), and of model::Robot::create
+/// with_other_lattice(); threads as of the latter.
 base::Result<model::Robot> make_robot(const Document& document, int thread_count = 0);
 
 }  // namespace holdfast::io

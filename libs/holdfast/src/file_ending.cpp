@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/file_ending.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace holdfast {
+namespace {
+
+/// What is written, and how the names of such files end.
+struct Endings {
+  FileFormat format;
+  std::string_view name;
+  std::vector<std::string_view> own;
+
+  bool takes(std::string_view ending) const { return std::ranges::find(own, ending) != own.end(); }
+};
+
+const std::vector<Endings>& formats() {
+  static const std::vector<Endings> all = {
+      {FileFormat::kJson, "JSON", {".json"}},
+      {FileFormat::kStructure, "holdfast JSON", {".json", ".xml", ".holdfast"}},
+      {FileFormat::kHoldfastJson, "holdfast JSON", {".json"}},
+      {FileFormat::kCsv, "CSV", {".csv"}},
+      {FileFormat::kSvg, "SVG", {".svg"}},
+      {FileFormat::kVtu, "VTK's XML format", {".vtu"}},
+      {FileFormat::kPvd, "a list of .vtu files", {".pvd"}},
+      {FileFormat::kHtml, "HTML", {".html", ".htm"}}};
+  return all;
+}
+
+/// Of formats that nothing here writes.
+constexpr std::string_view kOtherEndings[] = {".png", ".pdf",    ".jpg", ".jpeg", ".gif", ".eps",
+                                              ".vtk", ".vtkhdf", ".stl", ".obj",  ".md"};
+
+/// In small letters, with its dot.
+std::string ending_of(std::string_view path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  std::ranges::transform(ending, ending.begin(), [](char letter) {
+    return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
+  });
+  return ending;
+}
+
+}  // namespace
+
+std::optional<base::Error> find_foreign_ending(FileFormat format, std::string_view path) {
+  const std::string ending = ending_of(path);
+  const auto own = std::ranges::find(formats(), format, &Endings::format);
+  const bool is_foreign =
+      std::ranges::find(kOtherEndings, ending) != std::end(kOtherEndings) ||
+      std::ranges::any_of(formats(), [&](const Endings& other) { return other.takes(ending); });
+  if (!is_foreign || own->takes(ending)) {
+    return std::nullopt;
+  }
+  return base::bad_input(
+      fmt::format("what is written is {}, whose files end in {}", own->name, own->own.front()));
+}
+
+}  // namespace holdfast
