@@ -220,13 +220,14 @@ struct RankedSlip {
 /// Schwarz the product of two energy norms, that of the error and that of 1 N sideways which is
 /// shared out as the mass is. The latter is no more than of any way that bears it: down one way of
 /// connections, each with 1 N along and across and with all its moment about the robot's other end.
-double lean_error_mm(const model::Robot& robot, const Equilibrium& equilibrium,
-                     const model::RobotPart* part) {
+/// That way counts as long as from corner to corner of the robot's box, along its edges: of a robot
+/// that winds, whose ways are longer, this is an estimate.
+double lean_error_mm(const model::Robot& robot, const Equilibrium& equilibrium) {
   constexpr double kRoundingShare = 1e-9;
   std::array<double, 6> most;  // Coordinates, and less them.
   most.fill(std::numeric_limits<double>::lowest());
   double largest = 0;
-  for (std::size_t i = 0; i < model::own_module_count(robot, part); ++i) {
+  for (std::size_t i = 0; i < robot.own_count(); ++i) {
     const base::Cell& cell = robot.modules()[i].cell;
     const std::array<double, 3> place = {static_cast<double>(cell.x), static_cast<double>(cell.y),
                                          static_cast<double>(cell.z)};
@@ -239,7 +240,7 @@ double lean_error_mm(const model::Robot& robot, const Equilibrium& equilibrium,
   }
   double steps = 1;
   for (double& value : most) {
-    value = host::max(model::ranks_of(part), value);
+    value = host::max(robot.ranks(), value);
     steps += value;
   }
   const mechanics::BeamSection<double> section = model::beam_section(robot.material());
@@ -249,7 +250,7 @@ double lean_error_mm(const model::Robot& robot, const Equilibrium& equilibrium,
       steps * (1 / springs.axial + 1 / std::min(springs.shear_x, springs.shear_y) +
                reach * reach / std::min({springs.bend_x, springs.bend_y, springs.twist}));
   const double energy = equilibrium.energy_error;
-  return kRoundingShare * host::max(model::ranks_of(part), largest) +
+  return kRoundingShare * host::max(robot.ranks(), largest) +
          (std::isfinite(energy) ? kEnergyFactor * energy * std::sqrt(flexibility) : 0);
 }
 
@@ -313,7 +314,7 @@ std::optional<Lean> find_lean(const model::Robot& robot, const Assessment& asses
                         (b.y - a.y) * (body.centre_of_mass.x + x - a.x);
     lean.margin_mm = std::min(lean.margin_mm, turn / along);
   }
-  lean.margin_mm -= lean_error_mm(robot, assessment.equilibrium, part);
+  lean.margin_mm -= lean_error_mm(robot, assessment.equilibrium);
   return lean;
 }
 
