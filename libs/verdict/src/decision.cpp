@@ -30,19 +30,20 @@ std::optional<Reason> find_doubt(const Situation& here, const Assessment& assess
   const bool is_broken = breaks(range.low);
   std::optional<Reason> doubt;
   if (equilibrium.outcome == Outcome::kTooLarge) {
-    doubt = {.code = ReasonCode::kTooManyModules,
-             .numbers = {static_cast<double>(here.module_count)}};
+    doubt = Reason{.code = ReasonCode::kTooManyModules,
+                   .numbers = {static_cast<double>(here.module_count)}};
   } else if (equilibrium.outcome == Outcome::kTooSlow) {
-    doubt = {.code = ReasonCode::kNoDigitsLeft};
+    doubt = Reason{.code = ReasonCode::kNoDigitsLeft};
   } else if (equilibrium.outcome != Outcome::kSettled) {
     const bool is_singular = equilibrium.outcome == Outcome::kSingular;
-    doubt = {.code = is_singular ? ReasonCode::kSingularStiffness : ReasonCode::kNoEquilibrium,
-             .numbers = {static_cast<double>(equilibrium.steps)}};
+    doubt =
+        Reason{.code = is_singular ? ReasonCode::kSingularStiffness : ReasonCode::kNoEquilibrium,
+               .numbers = {static_cast<double>(equilibrium.steps)}};
   } else if (std::isnan(range.low) || std::isnan(range.high)) {
-    doubt = {.code = ReasonCode::kLoadNotANumber};
+    doubt = Reason{.code = ReasonCode::kLoadNotANumber};
   } else if (!std::isfinite(range.low) || !std::isfinite(range.high) ||
              breaks(range.high) != is_broken) {
-    doubt = {.code = ReasonCode::kLimitInRange, .numbers = {range.low, range.high}};
+    doubt = Reason{.code = ReasonCode::kLimitInRange, .numbers = {range.low, range.high}};
   } else if (assessment.several && !do_agree(*assessment.several, is_broken)) {
     doubt = reason_of(ReasonCode::kSolutionsDisagree, *assessment.several);
   }
@@ -105,13 +106,13 @@ std::optional<Reason> find_fall(const Situation& here, const Assessment& assessm
   slip = slip ? slip : model.slip_otherwise;
   std::optional<Reason> fall;
   if (here.rule == StabilityRule::kContactForces && model.is_settled && !model.is_stable) {
-    fall = {.code = ReasonCode::kModelFalls};
+    fall = Reason{.code = ReasonCode::kModelFalls};
   } else if (model.falls_otherwise && !breaks(assessment.load_ratio_range.low)) {
-    fall = {.code = ReasonCode::kStatesDisagree};
+    fall = Reason{.code = ReasonCode::kStatesDisagree};
   } else if (slip) {
-    fall = {.code = ReasonCode::kMaySlip,
-            .numbers = {static_cast<double>(slip->module), slip->ratio, slip->friction},
-            .cells = slip_cells(here.robot, *slip)};
+    fall = Reason{.code = ReasonCode::kMaySlip,
+                  .numbers = {static_cast<double>(slip->module), slip->ratio, slip->friction},
+                  .cells = slip_cells(here.robot, *slip)};
   }
   return fall;
 }
