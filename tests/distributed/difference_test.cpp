@@ -127,7 +127,7 @@ TEST(Difference, is_named_wherever_robot_and_exact_solver_answer_otherwise) {
       count += difference == Difference::kNone ? 0 : 1;
     }
   }
-  EXPECT_GT(count, test::kIsShort ? -1 : 4);
+  EXPECT_GT(count, test::campaign(4));
 }
 
 }  // namespace
