@@ -250,7 +250,8 @@ expect_line catoms.json '"lattice": "face-centred"'
 expect_exit 0 simulate --link unit catoms.xml
 expect_exit 1 simulate --link unit --lattice catoms3D catoms.xml
 expect_exit 65 simulate --next --lattice hexagonal catoms.json
-expect_exit 65 emulate --lattice hexagonal catoms.json
+# Said of a file whether an image of the firmware is there or not.
+expect_exit 65 emulate --lattice hexagonal --image missing.elf catoms.json
 expect_line err "/lattice: the lattice is 'face-centred' here"
 expect_exit 64 simulate --lattice fcc catoms.xml
 expect_exit 64 convert --lattice fcc catoms.xml catoms.json

@@ -38,8 +38,7 @@ if [ -f "$prefix/share/holdfast/holdfast.html" ]; then
 else
   echo "consumer: no page is built, so view is not tried"
 fi
-# Emulated modules run with what was installed, or it is said what is missing and what brings it,
-# before anything else is read.
+# Emulated modules run with what was installed, or it is said what is missing and what brings it.
 for board in v2 v1; do
   code=0
   "$prefix/bin/holdfast" emulate --quiet --board $board "$repository/scenarios/arm_tips_a.json" \
@@ -55,7 +54,8 @@ for board in v2 v1; do
   fi || fault "emulate --board $board: exit $code, $(cat "$work/log")"
   rm -f "$image"
   code=0
-  "$prefix/bin/holdfast" emulate --board $board missing.json 2>"$work/log" || code=$?
+  "$prefix/bin/holdfast" emulate --board $board "$repository/scenarios/arm_tips_a.json" \
+    2>"$work/log" || code=$?
   [ $code -eq 65 ] && grep -Eq "without Unicorn|the package holdfast-firmware" "$work/log" ||
     fault "emulate without an image: exit $code, $(cat "$work/log")"
 done

@@ -63,11 +63,6 @@ class EmulateRun {
     if (complain_of_outputs(inputs, options_.outputs())) {
       return kExitUsage;
     }
-    if (options_.pages.empty()) {
-      if (const auto missing = find_emulator_fault(image())) {
-        return fail(*missing, image());
-      }
-    }
     const auto structure = load_with_notes(options_.file, options_.reading);
     if (!structure) {
       return fail(structure.error(), options_.file);
@@ -135,6 +130,10 @@ class EmulateRun {
   static sim::Time microseconds(double seconds) { return static_cast<sim::Time>(seconds * 1e6); }
 
   int emulate_structure(const Structure& structure) {
+    // Before a check that may take long, after what the files and options themselves do wrong.
+    if (const auto missing = find_emulator_fault(image())) {
+      return fail(*missing, image());
+    }
     const CheckResult exact = check(structure);
     const auto run =
         emulate(structure, exact, image(), emulation_, [this](const sim::SimulationResult& result) {
