@@ -35,7 +35,8 @@ install(TARGETS holdfast_static EXPORT holdfast-static COMPONENT development)
 install(TARGETS holdfast_shared EXPORT holdfast-shared
         LIBRARY COMPONENT library NAMELINK_COMPONENT development)
 foreach(room ${rooms})
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/libs/${room}/include/ COMPONENT development
+  get_target_property(folder holdfast_${room} SOURCE_DIR)
+  install(DIRECTORY ${folder}/include/ COMPONENT development
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endforeach()
 

@@ -8,6 +8,7 @@
 - files stop at 800 lines, lines at 100 characters; functions stop at 70 lines
 - every source begins with the two SPDX lines; every header has #pragma once
 - every room has a README.md of 10 to 40 lines
+- no folder of a room keeps more than 25 files, and includes between its folders go one way
 - no tab, no trailing blank, no path of a machine, no TODO without an issue number
 - a link from one document leads to a file that is there, and to a heading that is there
 - what is cited as [Author 1999] has an entry in docs/references.bib
@@ -22,6 +23,8 @@ SPDX = ['SPDX-FileCopyrightText: The holdfast authors', 'SPDX-License-Identifier
 FILE_LINES_MAX = 800
 FUNCTION_LINES_MAX = 70
 COLUMNS_MAX = 100
+FOLDER_FILES_MAX = 25
+HEAPS = {'agent': 72}  # What is to be divided yet may not grow.
 FREESTANDING = {'base', 'boards', 'mechanics', 'agent', 'module'}
 APPLICATIONS = ('apps/', 'examples/', 'python/')
 FACADE_HEADERS = {'holdfast', 'distributed', 'emulated', 'exit_code', 'file_ending', 'move',
@@ -45,10 +48,15 @@ def tracked_files(root):
     return sorted(name for name in set(names) if (pathlib.Path(root) / name).is_file())
 
 
+def room_files(root):
+    files = [*root.glob('libs/*/CMakeLists.txt'), *root.glob('extras/*/CMakeLists.txt')]
+    return [file for file in files if 'holdfast_room(' in file.read_text()]
+
+
 def room_links(root):
     """Room -> rooms that it may include: itself and, transitively, what it links."""
     direct = {}
-    for file in (root / 'libs').glob('*/CMakeLists.txt'):
+    for file in room_files(root):
         text = file.read_text()
         room_call = text[text.index('holdfast_room('):]
         room_call = room_call[:room_call.index(')')]
@@ -63,7 +71,7 @@ def facade_exports(root):
     """The rooms whose headers the facade's headers export."""
     exported = set()
     for header in FACADE_HEADERS:
-        text = (root / f'libs/holdfast/include/holdfast/{header}.hpp').read_text()
+        text = ''.join(file.read_text() for file in root.glob(f'*/*/include/holdfast/{header}.hpp'))
         exported |= set(re.findall(r'holdfast/(\w+)/\w+\.hpp" *// IWYU pragma: export', text))
     return exported
 
@@ -79,8 +87,8 @@ def check_named_rooms(name, lines, links, exported):
 
 
 def check_includes(name, lines, links):
-    match = re.match(r'libs/(\w+)/(include|src)/', name)
-    allowed = links[match[1]] if match else None
+    match = re.match(r'(?:libs|extras)/(\w+)/(include|src)/', name)
+    allowed = links.get(match[1]) if match else None
     if name.startswith(APPLICATIONS):
         allowed = None
     for number, line in enumerate(lines, 1):
@@ -142,11 +150,41 @@ def check_source(name, lines, links, exported):
 
 
 def check_room_readmes(root):
-    for room in (root / 'libs').iterdir():
+    for room in [*(root / 'libs').iterdir(), *(root / 'extras').iterdir()]:
         readme = room / 'README.md'
         count = len(readme.read_text().splitlines()) if readme.is_file() else 0
         if not 10 <= count <= 40:
             fault(readme.relative_to(root), 1, f'{count} lines, a room has a README of 10 to 40')
+
+
+def folder_arrows(room):
+    """Folder -> folders that its files include, of a room's src; public headers belong to none."""
+    arrows = {}
+    for file in (room / 'src').rglob('*.[ch]pp'):
+        here = file.parent.relative_to(room / 'src').as_posix()
+        for include in re.findall(r'#include "([^"]+)"', file.read_text()):
+            there = pathlib.PurePosixPath(include).parent.as_posix()
+            if not include.startswith('holdfast/') and there not in (here, '.'):
+                arrows.setdefault(here, set()).add(there)
+    return arrows
+
+
+def check_folders(root):
+    for room in [*(root / 'libs').iterdir(), *(root / 'extras').iterdir()]:
+        for folder in [room / 'src', *(path for path in (room / 'src').rglob('*'))]:
+            count = sum(path.suffix in SOURCE_SUFFIXES for path in folder.glob('*.[ch]pp'))
+            allowed = HEAPS.get(room.name, FOLDER_FILES_MAX)
+            if count > allowed:
+                fault(folder.relative_to(root), 1, f'{count} files, allowed are {allowed}')
+        arrows = folder_arrows(room)
+        while arrows:
+            ends = [one for one, others in arrows.items() if not others & arrows.keys()]
+            if not ends:
+                fault(f'{room.relative_to(root)}/src', 1,
+                      f'includes go in a circle between the folders {sorted(arrows)}')
+                break
+            for one in ends:
+                del arrows[one]
 
 
 def anchors_of(path):
@@ -197,6 +235,7 @@ def main():
             if name != 'STYLE.md':
                 check_citations(name, path.read_text().splitlines(), cited)
     check_room_readmes(root)
+    check_folders(root)
     print('\n'.join(faults) if faults else 'tidy: no breach')
     sys.exit(1 if faults else 0)
 

@@ -50,10 +50,10 @@ sed 's/ unicorn$//' "$build/holdfast.pc" >"$other/holdfast.pc"
 ! links "$other" || fault "nothing in this build needs Unicorn, so the test sees nothing"
 grep -q 'undefined reference to .uc_' "$work/log" || fault "$(head -c 600 "$work/log")"
 includes=()
-for room in "$repository"/libs/*/include; do
+for room in "$repository"/{libs,extras}/*/include; do
   includes+=("-I$room")
 done
-"$compiler" -std=c++20 "${includes[@]}" -c "$repository/libs/emulator/src/processor_absent.cpp" \
+"$compiler" -std=c++20 "${includes[@]}" -c "$repository/extras/emulator/src/processor_absent.cpp" \
   -o "$work/objects/processor_absent.o"
 mapfile -t users < <(nm -A "$other/libholdfast.a" 2>/dev/null |
   sed -n 's/^[^:]*:\([^:]*\):.* U uc_.*/\1/p' | sort -u)

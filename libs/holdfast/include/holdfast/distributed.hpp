@@ -58,7 +58,8 @@ struct DistributedRun {
   verdict::Assessment view;
   std::vector<std::string> notes;  ///< What to know when comparing with the exact answer.
   std::array<base::Cell, 2> worst_cells = {};  ///< Of the robot's own worst connection.
-  /// Which limit that is nearest to; none where Eq. (17) is the law of all connections.
+  /// The limit that the worst load ratio is nearest to; none where Eq. (17) is the law of all
+  /// connections.
   std::optional<model::Limit> worst_limit = {};
   ErrorKind error_kind = ErrorKind::kEstimate;
   Difference difference = Difference::kNone;
@@ -125,7 +126,8 @@ std::string report_json(const Structure& structure, const CheckResult& exact,
 /// Writes the keys of the entry "distributed" into the object that is open.
 void write_distributed(io::JsonStream& json, const DistributedRun& run);
 
-/// For people: what the robot found, beside the exact answer, and what it cost by phases.
+/// The report for people: what the robot found, beside the exact answer, and what it cost by
+/// phases.
 std::string report_text(const Structure& structure, const CheckResult& exact,
                         const DistributedRun& run, const TextOptions& options = {});
 

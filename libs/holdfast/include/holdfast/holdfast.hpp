@@ -179,8 +179,8 @@ struct Rows {
 /// torsional moment (N mm). No rows where no equilibrium is known.
 Rows connection_rows(const CheckResult& result);
 
-/// Which limit every connection's load ratio is of, in the order of Robot::connections(). Empty
-/// where no equilibrium is known.
+/// The limit that each connection's load ratio refers to, in the order of Robot::connections().
+/// Empty where no equilibrium is known.
 std::vector<model::Limit> connection_limits(const model::Robot& robot,
                                             const verdict::Assessment& assessment);
 

@@ -29,7 +29,7 @@ struct MoveRequest {
   std::uint64_t seed = 0;
   double seconds_max = std::numeric_limits<double>::infinity();
   int thread_count = 0;  ///< 0: as many as the machine has cores; decides nothing.
-  /// As of plan::MoveOptions, both.
+  /// Both functions are as in plan::MoveOptions.
   std::function<bool()> is_interrupted = {};
   std::function<void(std::size_t states, int distance)> progress = {};
 };

@@ -34,7 +34,7 @@ struct SimulatedNext {
   std::size_t hanging_shown_count = 0;  ///< The hanging ones of them.
   RobotEffort verdict = {};             ///< Up to the verdict, had it not been for the faces.
   RobotEffort faces = {};               ///< Beyond that, for all free faces together.
-  /// From the plan of each cell that was left to the verdict with it withdrawn again.
+  /// The effort for each cell that was left, from its plan to the verdict after its withdrawal.
   std::vector<RobotEffort> trials = {};
 
   /// Rounds in sweeps of this robot.
@@ -59,7 +59,7 @@ base::Result<SimulatedNext> simulate_next(const model::RobotSpec& spec,
 base::Result<SimulatedNext> simulate_next(const Structure& structure,
                                           const SimulatedNextOptions& options = {});
 
-/// For people: what took how many sweeps, then the table of next_text().
+/// The report for people: what took how many sweeps, then the table of next_text().
 std::string simulated_next_text(const Structure& structure, const SimulatedNext& simulated,
                                 const NextReportOptions& options = {});
 

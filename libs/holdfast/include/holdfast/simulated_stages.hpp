@@ -63,7 +63,7 @@ base::Result<SimulatedStages> simulate_stages(
     const StepsFile& file, const sim::SimulationOptions& options,
     const std::function<void(std::size_t step)>& progress = {});
 
-/// For people: a line for every stage.
+/// The report for people, a line for every stage.
 std::string simulated_stages_text(const StepsFile& file, const SimulatedStages& stages,
                                   const TextOptions& options = {});
 

@@ -60,7 +60,7 @@ base::Result<SimulatedSteps> simulate_steps(
 /// The worst verdict of the robot that keeps what it knows.
 verdict::Verdict worst_verdict(const SimulatedSteps& steps);
 
-/// For people: a line for every change.
+/// The report for people, a line for every change.
 std::string simulated_steps_text(const StepsFile& file, const SimulatedSteps& steps,
                                  const TextOptions& options = {});
 

@@ -51,8 +51,8 @@ struct Trial {
   verdict::Verdict verdict = verdict::Verdict::kUndecided;
   /// None for a robot that topples, which needs no loads, and where no load is known.
   std::optional<double> load_ratio_max = {};
-  /// As of verdict::RigidBody: in mm, negative for a robot that topples, none for one that is
-  /// fixed.
+  /// The margin of verdict::RigidBody in mm: negative for a robot that topples, none for one that
+  /// is fixed.
   std::optional<double> margin_mm = {};
 };
 
@@ -102,7 +102,7 @@ struct NextResult {
 /// Judges every free cell beside a structure with its planned modules attached.
 NextResult find_next(const Structure& structure, const NextOptions& options = {});
 
-/// At most so many candidates, the first ones; 0: all.
+/// How many candidates a report lists at most, the first ones; 0: all.
 struct NextReportOptions {
   std::size_t count_max = 0;
 };

@@ -24,7 +24,8 @@ struct GrowingWork {
 /// at most kResidualMax, by refinement and at last by factorizing anew.
 class GrowingNetwork {
  public:
-  /// Of the sum of all loads' magnitudes; rounding leaves about 1e-12.
+  /// The largest residual, as a share of the sum of all loads' magnitudes; rounding leaves about
+  /// 1e-12.
   static constexpr double kResidualMax = 1e-10;
 
   /// Nothing is there at first. The network must outlive this.
@@ -59,8 +60,8 @@ class GrowingNetwork {
   /// Starts anew with these elements. Returns false if not all are held.
   [[nodiscard]] bool assign(std::span<const std::size_t> elements);
 
-  /// By node, zero where there is none: mm and rad. Solved when first asked after a change. Empty
-  /// if the equations cannot be solved to kResidualMax.
+  /// Displacements by node, zero where there is none: mm and rad. They are solved when first asked
+  /// for after a change. Empty if the equations cannot be solved to kResidualMax.
   const std::vector<base::Vec6<double>>& displacements();
 
   /// The largest translation of a node, in mm, infinite if the equations cannot be solved.

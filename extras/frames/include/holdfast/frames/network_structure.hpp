@@ -27,7 +27,7 @@ using Criterion = std::function<double(std::span<const base::Vec6<double>> displ
 /// The largest translation of a node, of `limit_mm`.
 Criterion translation_limit(double limit_mm);
 
-/// Which element a search tries first.
+/// Says which element a search tries first.
 enum class Preference : std::uint8_t {
   /// While growing what joins two nodes that are there, then what is nearest to the ground along
   /// the

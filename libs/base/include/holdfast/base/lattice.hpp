@@ -203,7 +203,8 @@ constexpr std::array<Real, 3> place_of(const Lattice& lattice, const Cell& axial
   return place;
 }
 
-/// Where the node of a cell is, in the global frame, in pitches; cell (0, 0, 0) is at the origin.
+/// The place of a cell's node in the global frame, in pitches; that of cell (0, 0, 0) is the
+/// origin.
 constexpr std::array<double, 3> node_place(const Lattice& lattice, const Cell& cell) {
   return place_of(lattice, axial_of(lattice, cell));
 }
@@ -234,8 +235,8 @@ class NodePlaces {
   std::array<std::array<double, 3>, 3> basis_{};
 };
 
-/// From a node to its neighbour in `direction`, or through its facet there, in the global frame: a
-/// vector of length one.
+/// The vector of length one from a node to its neighbour in `direction`, or through its facet
+/// there, in the global frame.
 template <class Real = double>
 constexpr std::array<Real, 3> unit_vector(const Lattice& lattice, Direction direction) {
   if (direction == down(lattice)) {

@@ -37,7 +37,7 @@ inline constexpr std::uint32_t kClockHz = 48'000'000;
 /// What a USART divides its clock by, to the nearest.
 constexpr std::uint32_t baud_divisor(std::uint32_t baud) { return (kClockHz + baud / 2) / baud; }
 
-/// Of the lines of Blinky Blocks 2 or, with HOLDFAST_BLINKY_BLOCKS_1, of version 1.
+/// The bit rate of the lines of Blinky Blocks 2 or, with HOLDFAST_BLINKY_BLOCKS_1, of version 1.
 #ifdef HOLDFAST_BLINKY_BLOCKS_1
 inline constexpr std::uint32_t kBaud = 38'400;
 #else

@@ -98,8 +98,8 @@ Reading read(std::string_view text);
 /// modules in any order, as docs/formats.md says. Neither its name nor what is proved changes it.
 std::string digest(const Certificate& certificate);
 
-/// Of which robot something is proved, as all programs say it, "arm, 13 modules, 2 of them
-/// planned".
+/// Words for the robot of which something is proved, as all programs say it, "arm, 13 modules, 2 of
+/// them planned".
 std::string robot_words(std::string_view name, std::size_t module_count, std::size_t planned_count);
 
 struct Verification {

@@ -23,16 +23,15 @@ class OutputFile {
   /// folder, a target that may not be written, a folder that takes no file.
   static base::Result<OutputFile> open(const std::filesystem::path& path);
 
-  /// Where text for this path ends up: the end of a chain of symbolic links, whether it exists or
-  /// not. A link to an open descriptor, such as /dev/stdout, is an end.
+  /// The file that text for this path ends up in: the end of a chain of symbolic links, whether it
+  /// exists or not. A link to an open descriptor, such as /dev/stdout, is an end.
   static std::filesystem::path target(const std::filesystem::path& path);
 
   /// Whether a target is an open descriptor of this process, such as /proc/self/fd/1.
   static bool is_descriptor(const std::filesystem::path& target);
 
-  /// From now on SIGHUP, SIGINT, SIGPIPE, SIGQUIT, SIGTERM, SIGXCPU and SIGXFSZ remove unfinished
-  /// files before they end the process; those that are ignored stay so. For programs, not for
-  /// libraries.
+  /// Makes SIGHUP, SIGINT, SIGPIPE, SIGQUIT, SIGTERM, SIGXCPU and SIGXFSZ remove unfinished files
+  /// before they end the process; those that are ignored stay so. For programs, not for libraries.
   static void remove_unfinished_on_signals();
 
   OutputFile(OutputFile&& other) noexcept;

@@ -72,7 +72,7 @@ class Ranks {
   virtual int rank() const = 0;
   virtual int count() const = 0;
 
-  /// Of all ranks' numbers, the same bits at all of them.
+  /// Adds up all ranks' numbers; every rank gets the same bits.
   virtual double sum(double mine) = 0;
   virtual double max(double mine) = 0;
 
@@ -82,7 +82,7 @@ class Ranks {
   /// All ranks' bytes, in the order of the ranks.
   virtual std::vector<std::byte> gather(std::span<const std::byte> mine) = 0;
 
-  /// For arrays that have `own_count` items of this rank's own.
+  /// Makes the exchange for arrays that have `own_count` items of this rank's own.
   virtual std::unique_ptr<Halo> make_halo(std::size_t own_count, std::span<const Copy> copies) = 0;
 
   /// Work begins, or ends.
@@ -203,8 +203,9 @@ std::vector<Item> gather(Ranks& ranks, std::span<const Item> mine) {
   return items;
 }
 
-/// Where this rank's items begin when all ranks' are numbered in the order of the ranks, and after
-/// the last rank's how many there are: one number more than there are ranks.
+/// The index at which this rank's items begin when all ranks' are numbered in the order of the
+/// ranks, for each rank, and after the last one how many there are: one number more than there are
+/// ranks.
 inline std::vector<std::size_t> starts(Ranks& ranks, std::size_t mine) {
   std::vector<std::size_t> counts = gather(ranks, std::span<const std::size_t>(&mine, 1));
   std::vector<std::size_t> first = {0};

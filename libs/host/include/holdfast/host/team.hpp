@@ -122,7 +122,7 @@ class Team {
         &work);
   }
 
-  /// The same by task(context, begin, end).
+  /// Runs task(context, begin, end) in the same way.
   void run(std::size_t chunk_count, Task task, const void* context);
 
   std::unique_ptr<Crew, Dismiss> crew_;  ///< None if there is one thread only.

@@ -41,7 +41,7 @@ struct Yield {
 
 /// How the structure collapses: rigid bodies, joints that give way.
 struct Mechanism {
-  /// By body: velocity of its centre and angular velocity, mm and rad; the largest is 1 mm.
+  /// Each body's velocity, of its centre, and angular velocity, mm and rad; the largest is 1 mm.
   std::vector<base::Vec6<double>> velocities;
   std::vector<Yield> yields;  ///< Fastest first.
 };

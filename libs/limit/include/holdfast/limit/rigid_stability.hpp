@@ -88,7 +88,8 @@ struct RigidStability {
 /// Margins below this count as none: rounding.
 inline constexpr double kMarginTie = 1e-9;
 
-/// Of the friction needed and of the tilt, as shares of them. Both are bounds from the safe side.
+/// The accuracy of the friction needed and of the tilt, as shares of them. Both are bounds from the
+/// safe side.
 inline constexpr double kFrictionAccuracy = 1e-3;
 inline constexpr double kTiltAccuracy = 2e-4;
 
@@ -98,8 +99,8 @@ inline constexpr double kFrictionLeast = 1e-2;
 /// Coefficients of friction beyond this are not looked at.
 inline constexpr double kFrictionMax = 1000;
 
-/// With `has_figures` also the friction needed and the tilt, which takes as long as a hundred of
-/// the rest where contacts have friction.
+/// Decides whether the body stays. `has_figures` adds the friction needed and the tilt, which takes
+/// as long as a hundred of the rest where contacts have friction.
 RigidStability assess_rigid(std::span<const ContactFacet> facets, const BodyLoad& load,
                             bool has_figures = true);
 

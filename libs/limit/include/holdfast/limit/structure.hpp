@@ -19,7 +19,7 @@ struct Body {
   bool is_fixed = false;  ///< Does not move; its load is of no account.
 };
 
-/// Which of the six components of a force a joint carries at all; the others are 0.
+/// The components of a force, of six, that a joint carries at all; the others are 0.
 enum Carries : std::uint8_t {
   kCarriesAcross = 1,
   kCarriesAxial = 2,

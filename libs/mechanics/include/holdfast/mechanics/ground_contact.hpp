@@ -45,7 +45,7 @@ namespace holdfast::mechanics {
 
 enum class ContactLaw : std::uint8_t { kRegularised, kUnilateral };
 
-/// Which part of a facet presses: all of it, one edge, one corner, nothing.
+/// The part of a facet that presses: all of it, one edge, one corner, nothing.
 struct ContactState {
   bool pressed = true;
   std::int8_t tilt_x = 0;  ///< Sign of mx^ while the facet tilts about x, else 0.

@@ -39,9 +39,9 @@ constexpr SupportCorners fixed_support() { return {.stable = true}; }
 /// two different ones are kept.
 SupportCorners merge(const SupportCorners& a, const SupportCorners& b);
 
-/// The same for corners that have been rounded to whole units: three are taken for being on one
-/// line where rounding may have put them off it. Of several on one line the two that are furthest
-/// apart are kept, which says most about a fourth.
+/// Merges corners that have been rounded to whole units: three are taken for being on one line
+/// where rounding may have put them off it. Of several on one line the two that are furthest apart
+/// are kept, which says most about a fourth.
 SupportCorners merge_rounded(const SupportCorners& a, const SupportCorners& b);
 
 }  // namespace holdfast::mechanics

@@ -52,11 +52,11 @@ class NeighbourTable {
   std::vector<std::int32_t> entries_;
 };
 
-/// Where in a table of neighbours a robot's connections are: how many come before each fourth
+/// The places of a robot's connections in a table of neighbours: how many come before each fourth
 /// module, and before which of these each sixteenth connection is.
 class ConnectionIndex {
  public:
-  /// Those of which `a` is one of the first `module_count` modules.
+  /// Counts the connections of which `a` is one of the first `module_count` modules.
   ConnectionIndex(const NeighbourTable& connected, std::size_t module_count, host::Team& team);
 
   ConnectionIndex() = default;
@@ -114,7 +114,7 @@ class Connections {
    private:
     friend Connections;
 
-    /// To the next connection, which there must be.
+    /// Goes to the next connection, which there must be.
     void step() {
       do {
         direction_ += 2;
@@ -148,7 +148,7 @@ class Connections {
 
   Iterator end() const { return from(size()); }
 
-  /// To go on from the connection number i.
+  /// An iterator that goes on from the connection number i.
   Iterator from(std::size_t i) const;
 
  private:

@@ -9,7 +9,8 @@
 
 namespace holdfast::model {
 
-/// Which facets a module has, as these go by modules: those from [module] to [module + 1].
+/// The first facet of each module, as facets are ordered by modules: a module's are those from
+/// [module] to [module + 1].
 inline std::vector<std::size_t> facet_starts(const Robot& robot) {
   std::vector<std::size_t> starts(robot.modules().size() + 1);
   for (const Facet& facet : robot.facets()) {

@@ -8,7 +8,7 @@
 
 namespace holdfast::model {
 
-/// Where a robot's mass is, global frame; the node of cell (0, 0, 0) is at the origin.
+/// A robot's mass and where it is, global frame; the node of cell (0, 0, 0) is at the origin.
 struct Mass {
   double kg = 0;
   std::array<double, 3> centre_mm{};

@@ -142,7 +142,7 @@ class Robot {
   static base::Result<Robot> create_part(const RobotSpec& spec, RobotPart part,
                                          int thread_count = 1);
 
-  /// Which part of the robot this is; all of it, unless create_part() made it.
+  /// The part of a robot that this is; all of it, unless create_part() made it.
   const RobotPart& part() const { return part_; }
 
   /// Who else has a part of the robot. All of them ask the same in the same order.
@@ -207,7 +207,8 @@ class Robot {
                      modules_[static_cast<std::size_t>(connection.b)].kind, connection.direction);
   }
 
-  /// The same for modules of two kinds, given by index, the second beside the first in `direction`.
+  /// The law between modules of two kinds, given by index, the second beside the first in
+  /// `direction`.
   const ConnectorLaw& connector(std::size_t kind_a, std::size_t kind_b,
                                 base::Direction direction) const {
     return connectors_[(kind_a * kinds_.size() + kind_b) * lattice_count() +
@@ -299,8 +300,8 @@ inline std::size_t whole_module_count(const Robot& robot) {
   return host::total(robot.ranks(), robot.own_count());
 }
 
-/// In which cells the floor lets no further module be: Robot::create() refuses one below a floor
-/// that another rests on, and one on a floor that another is below.
+/// Knows the cells in which the floor lets no further module be: Robot::create() refuses one below
+/// a floor that another rests on, and one on a floor that another is below.
 class FloorRule {
  public:
   explicit FloorRule(const Robot& robot);

@@ -29,7 +29,8 @@ inline constexpr std::uint8_t kFrameEscape = '}';
 inline constexpr std::uint8_t kFrameFlip = 0x20;
 inline constexpr std::uint8_t kHelloByte = 0x05;
 
-/// With HOLDFAST_BLINKY_BLOCKS_1, for little memory, packets have no more than version 1's bytes.
+/// The most bytes of a packet; with HOLDFAST_BLINKY_BLOCKS_1, for little memory, no more than
+/// version 1's.
 #ifdef HOLDFAST_BLINKY_BLOCKS_1
 inline constexpr int kPayloadBytesMax = agent::wire::kPacketBytesMin;
 #else

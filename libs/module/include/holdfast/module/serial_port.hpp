@@ -30,13 +30,13 @@ class SerialPort : public Port {
   /// The next byte that came in on a face; false: there is none.
   virtual bool read(int face, std::uint8_t& byte) = 0;
 
-  /// Where the bytes to send are to be written. Only while the line is free.
+  /// The memory that bytes to send are to be written to. Only while the line is free.
   virtual std::span<std::uint8_t, kFrameBytesMax> buffer(int face) = 0;
 
   /// Sends that many bytes from the buffer.
   virtual void transmit(int face, int size) = 0;
 
-  /// As wait().
+  /// Waits as wait() does.
   virtual void sleep(Time until) = 0;
 
  private:

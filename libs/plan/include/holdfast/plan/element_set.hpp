@@ -76,7 +76,7 @@ class ElementSet {
   std::vector<std::uint64_t> words_;
 };
 
-/// For hashed containers, which are asked and never walked through.
+/// A hash for containers that are asked and never walked through.
 struct ElementSetHash {
   std::size_t operator()(const ElementSet& set) const {
     return static_cast<std::size_t>(set.hash());

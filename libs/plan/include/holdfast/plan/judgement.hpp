@@ -17,8 +17,8 @@ struct Judgement {
   std::optional<double> load_ratio_max = {};
   /// What that does not exceed, errors included. Candidates have none.
   std::optional<double> load_ratio_high = {};
-  /// As of verdict::RigidBody: in mm, negative for a robot that topples, none for one that is
-  /// held.
+  /// The margin of verdict::RigidBody in mm: negative for a robot that topples, none for one that
+  /// is held.
   std::optional<double> margin_mm = {};
   /// `load_ratio_max` is not the largest load ratio, but proved to be no less than that.
   bool is_bound = false;

@@ -70,7 +70,7 @@ struct MoveCertificate {
 
 struct MovePlan {
   MoveOutcome outcome = MoveOutcome::kNotFound;
-  /// To the target, or if it is not found to the nearest shape that was reached.
+  /// The steps to the target, or if it is not found to the nearest shape that was reached.
   std::vector<model::Step> steps = {};
   bool is_shortest = false;     ///< No plan has fewer steps.
   int length_min = 0;           ///< No plan has fewer steps than this.
@@ -78,7 +78,7 @@ struct MovePlan {
   /// Moves, or the target, that were not taken because they are undecided: where there are any,
   /// `none` and the shortest plan are not proved.
   std::size_t undecided_count = 0;
-  /// Of the steps, judged anew as one sequence; none if there is no step.
+  /// The judgement of the steps, made anew as of one sequence; none if there is no step.
   std::optional<SequenceJudgement> judgement = {};
   std::optional<MoveCertificate> certificate = {};  ///< Of kNone.
 };

@@ -18,7 +18,7 @@
 /// the way; or a certificate that there is none.
 namespace holdfast::plan {
 
-/// From what to what, and how.
+/// What an order goes from and to, and how.
 struct OrderTask {
   model::RobotSpec target;  ///< All modules exist: none is planned.
   /// The modules that are there at first, all of the target. Empty: all fixed modules, or where
@@ -29,15 +29,15 @@ struct OrderTask {
 };
 
 struct RobotOrderOptions {
-  /// Of OrderOptions all but the group size, which is the task's.
+  /// The options of OrderOptions but the group size, which is the task's.
   std::uint64_t seed = 0;
   double seconds_max = std::numeric_limits<double>::infinity();
   std::size_t state_count_max = std::numeric_limits<std::size_t>::max();
   std::function<bool()> is_interrupted = {};
   Sense told_end = Sense::kGrowing;
   std::function<void(std::size_t states, std::size_t grown, std::size_t shrunk)> progress = {};
-  /// In the end every state on the way is solved that a bound has certified, while there is time:
-  /// then RobotOrder::load_ratio_max is the largest of all.
+  /// In the end solves every state on the way that a bound has certified, while there is time: then
+  /// RobotOrder::load_ratio_max is the largest of all.
   bool is_exact = false;
   /// 0: as many as the machine has cores. The result does not depend on it.
   int thread_count = 0;
@@ -62,7 +62,7 @@ struct RobotOrder {
   std::optional<double> margin_min_mm = {};
 };
 
-/// Where an error is that is the start's and not the target's.
+/// The place of an error that is the start's and not the target's.
 inline constexpr const char* kAtStart = "start";
 
 /// Errors: the target or the start is no robot, the start has modules that the target has not or is

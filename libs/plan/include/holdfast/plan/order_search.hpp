@@ -97,16 +97,16 @@ struct Closure {
   std::vector<std::pair<ElementSet, Judgement>> blocked = {};
 };
 
-/// Of kNotFound only the part of an order that led furthest from the end that is to be told: from
-/// a start, or to the whole. It is empty if no state there is safe.
+/// The order found; of kNotFound only the part of one that led furthest from the end that is to be
+/// told: from a start, or to the whole. It is empty if no state there is safe.
 struct Order {
   OrderOutcome outcome = OrderOutcome::kNotFound;
   ElementSet start = {};                   ///< What the order begins with.
   std::vector<Batch> steps = {};           ///< From there to the whole.
   std::vector<Judgement> judgements = {};  ///< Of that and of the state after each step; all safe.
   std::size_t state_count = 0;             ///< Judged in all.
-  /// Of kNotFound before time ran out: as many undecided states are all that could be entered next,
-  /// so that nothing is proved.
+  /// The number of undecided states if, of kNotFound before time ran out, they are all that could
+  /// be entered next, so that nothing is proved.
   std::size_t undecided_count = 0;
   std::optional<Closure> closure = {};  ///< Of kNone.
 };

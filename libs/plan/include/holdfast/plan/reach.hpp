@@ -26,7 +26,7 @@ const char* name(Reach reach);
 /// How modules get to their cells.
 struct ReachRule {
   Reach reach = Reach::kFree;
-  /// Where modules come from; kSurface only.
+  /// The cell that modules come from; kSurface only.
   std::optional<base::Cell> source = {};
 };
 
@@ -52,7 +52,7 @@ class ReachFinder {
   /// Whether floor and obstacles leave `cell` to a module.
   bool has_room(const base::Cell& cell) const;
 
-  /// The same as can_reach() for many cells at once.
+  /// Answers can_reach() for many cells at once.
   std::vector<bool> can_reach_each(const ElementSet& state,
                                    const std::vector<base::Cell>& cells) const;
 

@@ -33,8 +33,8 @@ struct ModuleState {
 /// Adds a load to those that a module bears.
 void add_payload(const model::Payload& payload, ModuleState& module);
 
-/// Which modules there are, where, and which neighbours are not connected: a value, changed module
-/// by module in constant time. Modules keep their index as long as they are there.
+/// The modules of a robot, their cells, and which neighbours are not connected: a value, changed
+/// module by module in constant time. Modules keep their index as long as they are there.
 class RobotState {
  public:
   static constexpr std::int32_t kNone = -1;
@@ -53,7 +53,7 @@ class RobotState {
     return modules_[static_cast<std::size_t>(index)];
   }
 
-  /// By index; some are not there.
+  /// The modules by index; some are not there.
   std::span<const ModuleState> modules() const { return modules_; }
 
   std::size_t module_count() const { return index_.size(); }
@@ -74,7 +74,7 @@ class RobotState {
   /// Everything but the modules and what belongs to them.
   const model::RobotSpec& surroundings() const { return around_->spec; }
 
-  /// Which obstacle is where.
+  /// The index of obstacles by cell.
   const model::ObstacleIndex& obstacles() const { return around_->obstacles; }
 
   /// m/s^2, global frame.
@@ -101,11 +101,11 @@ class RobotState {
   model::RobotSpec spec(std::span<const std::int32_t> modules,
                         std::span<const model::CellPair> more = {}) const;
 
-  /// The same of all modules.
+  /// The description of all modules.
   model::RobotSpec spec() const;
 
  private:
-  /// Only ever asked, never walked through.
+  /// A hash of cells, for containers that are asked and never walked through.
   struct CellHash {
     std::size_t operator()(const base::Cell& cell) const;
   };
@@ -131,14 +131,14 @@ class RobotState {
 std::vector<std::string_view> differences_of_surroundings(const model::RobotSpec& a,
                                                           const model::RobotSpec& b);
 
-/// In what those modules differ that both robots have in the same cells.
+/// Names what differs between modules that both robots have in the same cells.
 std::vector<std::string_view> differences_of_modules(const RobotState& a, const RobotState& b);
 
-/// In what two robots differ: their surroundings, and modules that both have in the same cells, as
-/// far as both are robots.
+/// Names what differs between two robots: their surroundings, and modules that both have in the
+/// same cells, as far as both are robots.
 std::vector<std::string_view> differences(const model::RobotSpec& a, const model::RobotSpec& b);
 
-/// The same, and in which cells modules are.
+/// Names these differences, and those of the cells that modules are in.
 std::vector<std::string_view> differences_of_targets(const model::RobotSpec& a,
                                                      const model::RobotSpec& b);
 

@@ -29,7 +29,8 @@ struct Scene {
   std::vector<model::RobotSpec> pieces;
 };
 
-/// Of groups that move at once every combination of carriers is a scene; more are refused.
+/// The most scenes of a stage: every combination of carriers of groups that move at once is one;
+/// more are refused.
 inline constexpr std::size_t kSceneMax = 1000;
 
 /// The scenes of a stage of a step on a robot, and of its transition. Errors, each beginning with

@@ -45,7 +45,7 @@ constexpr bool is_of_link(Fault::Kind kind) {
 /// one that looks at a neighbour, until it is taken off.
 struct Misplaced {
   std::int32_t module = 0;
-  /// By direction in the robot, the face that the module takes it for; each face once.
+  /// The face that the module takes each direction in the robot for; each face once.
   std::array<base::Direction, base::Lattice::kDirectionCountMax> faces = {};
 };
 

@@ -71,7 +71,7 @@ class BlockLu {
 
   std::size_t node_count() const { return position_.size(); }
 
-  /// Where a node stands in the order of elimination.
+  /// The place of a node in the order of elimination.
   std::size_t place(std::size_t node) const { return static_cast<std::size_t>(position_[node]); }
 
   /// Solves A x = b in place for kLaneCount b and a symmetric A, by place; to the same bits as one

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-/// Where the factors of a sparse symmetric pattern of blocks have blocks, before any number is
+/// The blocks that the factors of a sparse symmetric pattern of blocks have, before any number is
 /// known.
 namespace holdfast::solver {
 

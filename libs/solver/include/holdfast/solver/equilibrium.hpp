@@ -108,7 +108,7 @@ class EquilibriumSolver {
   /// there are none, else a few linear systems for each. Not certain to find all.
   void seek_others(Equilibrium& settled);
 
-  /// Where solve() under the regularised law did not settle: seeks solutions of it. All states of
+  /// Seeks solutions of the regularised law where solve() under it did not settle. All states of
   /// up to three facets are tried on up to 128 modules, so that none is missed. Else Newton's
   /// method starts with each facet as the only one that presses, all over, on an edge or on a
   /// corner; nothing is sought for more than 24 facets, or eight with more than 128 modules, or

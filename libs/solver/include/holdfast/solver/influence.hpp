@@ -41,7 +41,7 @@ class Influence {
   /// Displacements by module under the robot's own loads, refined.
   const std::vector<Vec>& displacement() const { return displacement_; }
 
-  /// The same before refinement: as far off as what solve() gives.
+  /// The displacements before refinement: as far off as what solve() gives.
   const std::vector<Vec>& rough_displacement() const { return rough_; }
 
   /// Finds K^-1 of each of these modules and between each of these pairs of modules: between()
@@ -56,10 +56,10 @@ class Influence {
   /// Slots that solve() takes: slot(module) for every module, and one more.
   std::size_t slot_count() const;
 
-  /// Where a module stands among the slots. Fixed modules share the last one.
+  /// The slot of a module. Fixed modules share the last one.
   std::size_t slot(std::size_t module) const { return slots_[module]; }
 
-  /// From loads to displacements, in place; what stands in the last slot is not looked at.
+  /// Turns loads into displacements in place; what stands in the last slot is not looked at.
   void solve(std::span<LaneBlock> by_slot) const;
 
  private:

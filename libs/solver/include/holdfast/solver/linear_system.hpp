@@ -74,7 +74,7 @@ class FacetLaw {
 
   void set_gamma(Real gamma) { ground_.gamma = gamma; }
 
-  /// The same law with other weak springs.
+  /// This law with other weak springs.
   FacetLaw with_gamma(Real gamma) const {
     FacetLaw law = *this;
     law.set_gamma(gamma);
@@ -197,7 +197,7 @@ class LinearSystem {
   /// The last solution, by module; fixed modules do not move.
   virtual std::vector<Vec> displacement() = 0;
 
-  /// The same of the facets' modules alone, by facet.
+  /// The displacements of the facets' modules alone, by facet.
   virtual std::vector<Vec> facet_displacement();
 
   /// Takes the last solve()'s solution to the last digits that the options ask for. Returns false
@@ -210,7 +210,7 @@ class LinearSystem {
     kMore,
   };
 
-  /// After refine(): fills in all that a solution holds.
+  /// Fills in all that a solution holds; to be called after refine().
   virtual void hand_over(Solution& /*solution*/, Further /*further*/) {}
 
   /// Displacements by module under each of several loads, for the present facets; none if a
@@ -237,7 +237,7 @@ class LinearSystem {
   virtual void take_facet(std::size_t facet) = 0;
   virtual void take_loads() = 0;
 
-  /// The same for loads that have changed little from those `before`.
+  /// Takes loads that have changed little from those `before`.
   virtual void take_changed_loads(const model::Loads& /*before*/) { take_loads(); }
 
   /// Weak springs are taken back in so many steps at most, as long as each is so much shorter than

@@ -36,7 +36,8 @@ struct EquilibriumOptions {
   Precision precision = Precision::kSingle;
   /// Supports neither lift nor tilt: the ground holds like a module below would. A linear problem.
   bool is_bonded = false;
-  /// For multigrid; 0: as many as the machine has cores. The result does not depend on it.
+  /// The number of threads of multigrid; 0: as many as the machine has cores. The result does not
+  /// depend on it.
   int thread_count = 0;
   /// Multigrid's error in the energy norm, as a share of that of no displacements at all.
   /// Load ratios are then within 1e-4 of the largest one or of 1 (docs/solver.md).
@@ -46,8 +47,8 @@ struct EquilibriumOptions {
   /// unilateral law where it needs none. Otherwise it does so only where double precision does not
   /// suffice.
   bool is_precise = false;
-  /// Of verdict::assess(): how far gravity may turn and which friction would do where supports are
-  /// anywhere. Only reports need them.
+  /// Makes verdict::assess() find how far gravity may turn and which friction would do where
+  /// supports are anywhere. Only reports need them.
   bool has_rigid_figures = true;
   /// The direct solver gives up (kTooLarge) where more blocks than this fill in per node.
   std::size_t fill_max = std::numeric_limits<std::size_t>::max();

@@ -23,7 +23,7 @@ enum class Verdict : std::uint8_t {
   kUndecided,  ///< Not certain; the reasons say why.
 };
 
-/// Which contact model the forces come from.
+/// The contact model that the forces come from.
 enum class ContactModel : std::uint8_t {
   kNone,         ///< Every support is fixed.
   kBonded,       ///< Supports hold like a module below would, on request.
@@ -59,7 +59,8 @@ struct OpenGaps {
   std::array<base::Cell, 2> ends = {};  ///< Of that connection.
 };
 
-/// Where bending takes the centre of mass, in plan, by the displacements of the equilibrium.
+/// The place in plan to which bending takes the centre of mass, by the displacements of the
+/// equilibrium.
 struct Lean {
   double shift_mm = 0;   ///< By how far it moves.
   double margin_mm = 0;  ///< Its least distance to an edge's line then, inside, less its error.
@@ -68,7 +69,7 @@ struct Lean {
 /// Bending that takes more than this share of the margin is worth a warning.
 inline constexpr double kLeanShare = 0.1;
 
-/// Of a robot of which this is a part: what all ranks' connections are together.
+/// What all ranks' connections together are, of a robot of which this is a part.
 struct WholeLoads {
   std::size_t connection_count = 0;
   std::size_t broken_count = 0;
@@ -117,8 +118,8 @@ struct Assessment {
   RigidBody simplified;         ///< Sec. III-B.
   limit::RigidStability rigid;  ///< The same with supports anywhere, and how it would fall.
   ModelStability model;         ///< Sec. III-C.
-  /// On a flat floor by the rigid body. With supports elsewhere only if the rigid body holds and
-  /// the model does not say otherwise. Bonded supports hold always.
+  /// Whether the robot is stable: on a flat floor by the rigid body; with supports elsewhere only
+  /// if the rigid body holds and the model does not say otherwise. Bonded supports hold always.
   bool is_stable = false;
 
   /// None for a robot that is whole. Of a part `connections` and `broken` are this rank's, and

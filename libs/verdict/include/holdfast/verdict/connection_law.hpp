@@ -18,8 +18,8 @@
 /// What connections carry, Eqs. (16)-(17), for very many of them.
 namespace holdfast::verdict {
 
-/// For one direction: what mechanics::middle_force() and load_ratio() compute, to the last bit,
-/// with the beam's frame and constants worked out beforehand. For a load ratio that leaves three
+/// What mechanics::middle_force() and load_ratio() compute for one direction, to the last bit, with
+/// the beam's frame and constants worked out beforehand. For a load ratio that leaves three
 /// differences: of the displacements along the beam, and of the rotations across.
 class ConnectionLaw {
  public:
@@ -97,8 +97,8 @@ class ConnectionLaws {
     return is_plain_ ? plain(pair).result(p, q) : general_result(pair, p, q);
   }
 
-  /// The same for all modules' displacements, with what is to be added to them for 106 bits, or
-  /// nothing.
+  /// The load ratio from all modules' displacements, with what is to be added to them for 106 bits,
+  /// or nothing.
   double load_ratio(const model::Connection& pair, const Vecs& high, const Vecs& low) const;
   ConnectionResult result(const model::Connection& pair, const Vecs& high, const Vecs& low) const;
 

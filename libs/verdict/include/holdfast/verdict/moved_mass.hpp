@@ -19,7 +19,8 @@ struct MovedMass {
     y_kg_mm += mass * y_mm;
   }
 
-  /// By how far the centre of mass moves if both sums may be off by `error_kg_mm`, at most.
+  /// The distance by which the centre of mass moves if both sums may be off by `error_kg_mm`, at
+  /// most.
   double shift_mm(double error_kg_mm = 0) const {
     return std::hypot(std::abs(x_kg_mm) + error_kg_mm, std::abs(y_kg_mm) + error_kg_mm) / mass_kg;
   }

@@ -45,8 +45,8 @@ inline constexpr double kMarginTie = 1e-9;
 /// then the support polygon decides.
 bool is_on_flat_floor(const model::Robot& robot);
 
-/// For a robot that is_on_flat_floor() all of it; for any other only the centre of mass, no polygon
-/// and no margin, and `is_stable` if something holds it fast.
+/// Assesses the rigid body: for a robot that is_on_flat_floor() all of it; for any other only the
+/// centre of mass, no polygon and no margin, and `is_stable` if something holds it fast.
 RigidBody assess_rigid_body(const model::Robot& robot);
 
 /// What assess_rigid_body() says of a robot with one more module, again and again, without looking
@@ -58,7 +58,8 @@ class GrowingRigidBody {
   GrowingRigidBody(const model::Robot& robot, double mass_kg);
   ~GrowingRigidBody();
 
-  /// With a module in a cell, which rests on the floor with its lower side or does not.
+  /// The body with one more module in a cell, which rests on the floor with its lower side or does
+  /// not.
   RigidBody with(const base::Cell& cell, bool is_on_floor) const;
 
  private:

@@ -9,7 +9,7 @@
 #include "holdfast/distributed.hpp"         // IWYU pragma: export
 #include "holdfast/emulator/emulation.hpp"  // IWYU pragma: export
 
-/// The facade's third part: the robot works its verdict out by itself, as firmware on emulated
+/// Beside the facade: the robot works its verdict out by itself, as firmware on emulated
 /// microcontrollers.
 ///
 ///     auto run = holdfast::emulate(structure, exact, "build/firmware/module_stm32f0.elf", {});
@@ -40,7 +40,7 @@ void write_report_json(std::ostream& out, const Structure& structure, const Chec
 std::string report_json(const Structure& structure, const CheckResult& exact,
                         const EmulatedRun& run);
 
-/// For people.
+/// The report for people.
 std::string report_text(const Structure& structure, const CheckResult& exact,
                         const EmulatedRun& run, const TextOptions& options = {});
 

@@ -47,13 +47,13 @@ struct Fault {
 struct EmulationOptions {
   std::uint64_t seed = 1;  ///< Of the noise of the sensors and of when the modules start.
   std::vector<Fault> faults = {};
-  /// Of the board that the image is made for: its bit rate, and its packets.
+  /// The link of the board that the image is made for: its bit rate, and its packets.
   sim::LinkModel link = sim::blinky_blocks_v2();
   std::int32_t anchor = 0;       ///< The module that knows its cell.
   std::int32_t plan_module = 0;  ///< Is told of the robot's planned modules, on a free face.
   Time plan_at = 400'000;        ///< When.
   bool tells_planned = true;     ///< False: nobody is told of them but by `announcements`.
-  /// In the order of their times, each on a face of the module that is free then.
+  /// Announcements in the order of their times, each on a face of the module that is free then.
   std::vector<sim::Announcement> announcements = {};
   Time start_spread = 20'000;  ///< Modules start within so long.
   Time time_max = 60'000'000;
@@ -102,7 +102,8 @@ class Emulation {
   /// the verdict, or the time is up.
   bool run_for(Time duration);
 
-  /// In microseconds, otherwise as the simulator's. Rounds are not counted.
+  /// The result has times in microseconds and is otherwise as the simulator's. Rounds are not
+  /// counted.
   sim::SimulationResult result() const;
 
   FirmwareReport report() const;
