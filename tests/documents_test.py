@@ -21,8 +21,8 @@ import sys
 import tempfile
 
 DOCUMENTS = ['README.md', *(f'docs/{name}.md' for name in (
-    'tour', 'theory', 'solver', 'solver_evidence', 'distributed', 'one_sweep', 'proof', 'page',
-    'formats', 'plan', 'move'))]
+    'first_robot', 'first_plan', 'tour', 'theory', 'solver', 'solver_evidence', 'distributed',
+    'one_sweep', 'proof', 'page', 'formats', 'plan', 'move'))]
 # These need the firmware's compilers; tests/firmware checks what they show.
 NOT_RUN = './dev firmware'
 

@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: The holdfast authors
+# SPDX-License-Identifier: Apache-2.0
+"""site.py REPOSITORY HOLDFAST FOLDER   lays out in FOLDER what Sphinx makes the site of.
+
+- the documents of docs/, links out of docs/ turned into names of files
+- index.md and a page for each kind of document, from SECTIONS
+- commands.md: what --help says of every command
+- cpp_api.md and python_api.md: the facade's names, from Doxygen's XML, and the package's
+
+Every document of docs/ has to be in SECTIONS, once.
+"""
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+SECTIONS = [
+    ('Tutorials', 'From nothing to an answer, step by step.',
+     ['first_robot', 'first_plan', 'python_examples', 'tour']),
+    ('How to', 'One task each.',
+     ['install', 'python', 'page', 'visiblesim', 'firmware', 'cluster', 'supports']),
+    ('Reference', 'What there is, complete.',
+     ['commands', 'formats', 'robots', 'python_api', 'cpp_api', 'wire', 'glossary']),
+    ('Explanation', 'Why it works.',
+     ['theory', 'general', 'limit', 'elastic_and_limit', 'proof', 'solver', 'plan', 'next', 'order',
+      'move', 'printed_frames', 'distributed', 'one_sweep']),
+    ('Evidence', 'Measurements.', ['solver_evidence', 'test6']),
+]
+GENERATED = {'commands', 'python_api', 'cpp_api'}
+
+INDEX = '''# holdfast
+
+A modular robot is built of many small modules. Before one is attached or moved: *will the robot
+hold?* holdfast predicts which connections would break and whether the robot would topple, on a
+workstation and inside the robot.
+
+```{image} arm_breaks_b.svg
+:alt: An arm of modules with two planned ones; one connection would carry 1.20 of its strength
+```
+
+| you are | begin with |
+|---|---|
+| new here, a student | [Your first robot](first_robot.md), [the page](page.md) in a browser |
+| writing Python | [Python](python.md), [examples](python_examples.md), [its names](python_api.md) |
+| writing C++ | [install](install.md), [the facade](cpp_api.md) |
+| building a robot | [firmware](firmware.md), [how the robot decides](distributed.md) |
+| reading the paper | [theory](theory.md), [its sixth test, revisited](test6.md) |
+
+'''
+
+
+def without_ways_out(text):
+    """Links out of docs/ become their words, as there is nothing on the site to go to."""
+    return re.sub(r'(?<!!)\[([^\]]+)\]\(\.\./[^)]*\)', r'\1', text)
+
+
+def lay_documents(docs, folder):
+    shutil.copytree(docs, folder, dirs_exist_ok=True, ignore=shutil.ignore_patterns('site'))
+    for document in folder.glob('*.md'):
+        document.write_text(without_ways_out(document.read_text()))
+
+
+def commands_of(program):
+    listed = subprocess.run([program, '--help'], capture_output=True, text=True, check=True).stdout
+    body = listed[listed.index('Subcommands:'):].split('\n')[1:]
+    return [line.split()[0] for line in body if re.match(r'  \w', line)]
+
+
+def commands_page(program):
+    parts = ['# Commands\n\nWhat `holdfast COMMAND --help` says; the manual page has the same.\n']
+    for command in commands_of(program):
+        text = subprocess.run([program, command, '--help'], capture_output=True, text=True,
+                              check=True).stdout
+        parts += [f'## holdfast {command}', '', '```text', text.rstrip(), '```', '']
+    return '\n'.join(parts)
+
+
+CPP_PAGE = '''# Names of the C++ library
+
+The facade, `#include "holdfast/holdfast.hpp"` and its neighbours: everything that an application
+includes.
+
+```{doxygennamespace} holdfast
+:project: holdfast
+:content-only:
+:members:
+```
+'''
+
+PYTHON_PAGE = '''# Names of the Python package
+
+```{eval-rst}
+.. automodule:: holdfast
+   :members:
+   :imported-members:
+```
+'''
+
+
+def lay_sections(folder):
+    index = [INDEX]
+    for title, line, names in SECTIONS:
+        index += [f'```{{toctree}}\n:caption: {title}\n:maxdepth: 1\n'] + names + ['```\n']
+    (folder / 'index.md').write_text('\n'.join(index))
+    listed = [name for _, _, names in SECTIONS for name in names]
+    there = {path.stem for path in folder.glob('*.md')} - {'index'}
+    if sorted(listed) != sorted(there):
+        sys.exit(f'site.py: SECTIONS and docs/ differ: {sorted(there ^ set(listed))}')
+
+
+def main():
+    repository, program = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]).resolve()
+    folder = pathlib.Path(sys.argv[3])
+    shutil.rmtree(folder, ignore_errors=True)
+    lay_documents(repository / 'docs', folder)
+    (folder / 'commands.md').write_text(commands_page(program))
+    (folder / 'cpp_api.md').write_text(CPP_PAGE)
+    (folder / 'python_api.md').write_text(PYTHON_PAGE)
+    lay_sections(folder)
+
+
+if __name__ == '__main__':
+    main()
