@@ -673,6 +673,10 @@ Order Conductor::after_corners(const Setup& setup, const Report& report) {
     other_fails_ = !report.corners.stable;
     return next_trial(setup);
   }
+  if (kHasSurroundings && is_comparing_) {
+    // Without the feet that were freed only weak springs may hold the robot.
+    return report.corners.stable ? decide() : finish(Verdict::kUndecided, Reason::kAmbiguousFeet);
+  }
   is_standing_ = report.corners.stable;
   if (!is_unilateral_) {
     if (is_standing_) {
