@@ -31,8 +31,10 @@ constexpr int kTrialsMax = 250;
 /// Changes of contact states in one trial.
 constexpr std::uint32_t kChangesOfTrial = 20;
 
-/// Of so many facets all states are tried, as by the exact solver.
+/// Of so many facets all states are tried, as by the exact solver, in a robot of so few modules: a
+/// hundred solves, which take larger ones five times as long as trials of one foot.
 constexpr std::uint8_t kFewFeet = 3;
+constexpr std::uint32_t kFewModules = 12;
 
 /// On a level floor a largest load ratio below this is not doubted: of 80 further solutions of
 /// 7,400 random robots none has more than 1.2 times another's. Elsewhere any is, as one may have
@@ -114,8 +116,8 @@ Order Conductor::after_seek(const Setup& setup, const Report& report) {
     return settled(setup);
   }
   constexpr std::uint32_t kPressing = mechanics::ContactState::kCodeCount - 1;
-  if (is_first && is_by_one_foot_ && report.count <= kFewFeet * kPressing &&
-      (is_exact() || !is_one_sweep())) {
+  const bool has_few = report.count <= kFewFeet * kPressing && effort_.module_count <= kFewModules;
+  if (is_first && is_by_one_foot_ && has_few && (is_exact() || !is_one_sweep())) {
     tries_each_state_ = true;
     return seek(0);
   }
