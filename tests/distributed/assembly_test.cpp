@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,6 +28,28 @@ using Faces = std::array<base::Direction, base::Lattice::kDirectionCountMax>;
 constexpr std::size_t kModulesMin = 3;
 constexpr std::size_t kModulesMax = 11;
 
+/// The robot, on nothing but a floor, as far from the origin as one, two or three bytes of a
+/// coordinate tell, of other lattices than the cubic one as far as their corners can be told; by
+/// even numbers, as rows and layers of some are shifted in turn.
+model::RobotSpec moved_away(model::RobotSpec spec, std::uint64_t seed) {
+  base::Rng rng(seed ^ 0x3a7U);
+  std::array<std::int32_t, 3> away{};
+  for (std::int32_t& part : away) {
+    constexpr std::array<std::int32_t, 5> kAway = {0, 250, 2'000, 65'000, 999'000};
+    const std::size_t count = spec.lattice == base::kCubic ? kAway.size() : 3;
+    part = (rng.below(2) == 0 ? 1 : -1) * kAway[rng.below(count)];
+  }
+  for (std::vector<base::Cell>* cells : {&spec.existing, &spec.planned, &spec.fixed}) {
+    for (base::Cell& cell : *cells) {
+      cell = {cell.x + away[0], cell.y + away[1], cell.z + away[2]};
+    }
+  }
+  if (spec.support_z) {
+    *spec.support_z += away[2];
+  }
+  return spec;
+}
+
 /// A robot of any lattice, so strong that it would be on the brink of the wrong verdict.
 std::optional<model::Robot> some_robot(std::uint64_t seed) {
   const base::Lattice& lattice = test::kLattices[seed % test::kLattices.size()];
@@ -36,7 +59,9 @@ std::optional<model::Robot> some_robot(std::uint64_t seed) {
                : test::with_last_planned(
                      test::on_a_floor(test::general_robot(lattice, seed), false), seed % 3);
   const std::size_t count = spec.existing.size();
-  return kModulesMin <= count && count <= kModulesMax ? test::near_limit(spec, seed) : std::nullopt;
+  return kModulesMin <= count && count <= kModulesMax
+             ? test::near_limit(moved_away(spec, seed), seed)
+             : std::nullopt;
 }
 
 std::int32_t existing_count(const model::Robot& robot) {

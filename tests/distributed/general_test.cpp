@@ -260,6 +260,26 @@ TEST(DistributedGeneral, is_undecided_where_another_solution_falls) {
   }
 }
 
+/// Open feet are freed, to compare, and then nothing but weak springs holds them; or a robot on
+/// three feet falls by two of them, or by none.
+TEST(DistributedGeneral, is_undecided_where_feet_in_other_states_do_not_hold_it) {
+  struct Seed {
+    base::Lattice lattice;
+    std::uint64_t seed;
+  };
+
+  for (const auto& [lattice, seed] :
+       test::campaign({Seed{base::kCubic, 589}, Seed{base::kCubic, 1125},
+                       Seed{base::kHexagonalPrism, 827}, Seed{base::kHexagonalPrism, 1263},
+                       Seed{base::kCubic, 2436}, Seed{base::kFaceCentred, 975}})) {
+    const auto robot = model::Robot::create(test::general_robot(lattice, seed)).value();
+    const test::Comparison comparison = test::compare(robot, {.seed = seed});
+    EXPECT_EQ(comparison.exact, verdict::Verdict::kUndecided) << seed;
+    EXPECT_TRUE(comparison.is_undecided()) << seed << ": " << comparison.text();
+    EXPECT_EQ(comparison.result.answer.reason, agent::Reason::kAmbiguousFeet) << seed;
+  }
+}
+
 /// By the paper's law a facet that presses with 6e-6 N, less than a millionth of what else acts on
 /// it, holds 1.9 N across, and a connection breaks; by the exact law it carries 0.55 of what it
 /// can. Without that facet the paper's law has no state here, and the exact law would decide alone.

@@ -312,6 +312,8 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
     seeking_ = Seeking::kNotYet;
     other_fails_ = false;
     is_by_one_foot_ = false;
+    tries_each_state_ = false;
+    foot_count_ = 0;
   }
   solve_iterations_max_ = 200 + 20 * effort_.module_count;
   Order begin = ask(Operation::kBegin);
@@ -669,9 +671,8 @@ bool has_friction([[maybe_unused]] const Setup& setup) {
 }  // namespace
 
 Order Conductor::after_corners(const Setup& setup, const Report& report) {
-  if (is_seeking()) {
-    other_fails_ = !report.corners.stable;
-    return next_trial(setup);
+  if (is_seeking() || (kHasSurroundings && is_comparing_)) {
+    return after_corners_otherwise(setup, report.corners.stable);
   }
   is_standing_ = report.corners.stable;
   if (!is_unilateral_) {

@@ -83,7 +83,7 @@ Order Conductor::settled(const Setup& setup, [[maybe_unused]] const Report* last
   has_motion_ = is_one_sweep() && !is_unilateral_;
   has_factors_ = has_motion_ && effort_.method == Method::kElimination;
   if (is_comparing_) {
-    return decide();
+    return may_fall() ? ask(Operation::kCorners) : decide();
   }
   if (is_seeking()) {
     return after_trial(setup);

@@ -10,7 +10,9 @@
 // Where Newton's method settles nowhere, and contact states say whether the robot falls, it is
 // those that fall that are sought: who falls hangs by one foot, so each foot is tried as all that
 // presses, all over and by each edge and corner. The exact law decides whether what is not found to
-// fall is safe.
+// fall is safe. Of few feet all states are gone through in which the feet that press have all their
+// corners on one line: a state that the law prescribes for what it leads to falls. Where others
+// press the robot stands, and nobody has to solve for it.
 #include "holdfast/agent/conductor.hpp"
 #include "holdfast/mechanics/connector.hpp"
 #include "methods.hpp"
@@ -28,6 +30,11 @@ constexpr int kTrialsMax = 250;
 
 /// Changes of contact states in one trial.
 constexpr std::uint32_t kChangesOfTrial = 20;
+
+/// Of so many facets all states are tried, as by the exact solver, in a robot of so few modules: a
+/// hundred solves, which take larger ones five times as long as trials of one foot.
+constexpr std::uint8_t kFewFeet = 3;
+constexpr std::uint32_t kFewModules = 12;
 
 /// On a level floor a largest load ratio below this is not doubted: of 80 further solutions of
 /// 7,400 random robots none has more than 1.2 times another's. Elsewhere any is, as one may have
@@ -61,13 +68,15 @@ bool Conductor::may_hang_by_foot() const {
          seeking_ == Seeking::kNotYet;
 }
 
-/// Are the states those that were found first, and want to be?
+/// Are the states those that were found first, and want to be? Or not those that were tried?
 bool Conductor::is_back() const {
-  return kSeeksOthers && !is_by_one_foot_ && seeking_ == Seeking::kTrying &&
-         states_hash_ == found_hash_;
+  return kSeeksOthers && seeking_ == Seeking::kTrying &&
+         (tries_each_state_ || (!is_by_one_foot_ && states_hash_ == found_hash_));
 }
 
 bool Conductor::is_by_one_foot() const { return kSeeksOthers && is_by_one_foot_; }
+
+bool Conductor::tries_each_state() const { return kSeeksOthers && tries_each_state_; }
 
 Order Conductor::begin_seeking() {
   seeking_ = Seeking::kTrying;
@@ -86,7 +95,7 @@ Order Conductor::begin_one_foot() {
 
 Order Conductor::seek(std::uint32_t key, std::uint8_t flags) {
   Order order = ask(Operation::kSeek);
-  order.flags = is_by_one_foot_ ? kOneFoot : flags;
+  order.flags = tries_each_state_ ? kEachState : is_by_one_foot_ ? kOneFoot : flags;
   order.mass = static_cast<std::int32_t>(key);
   next_key_ = key;
   has_motion_ = false;
@@ -96,6 +105,9 @@ Order Conductor::seek(std::uint32_t key, std::uint8_t flags) {
 /// The first report, of what was found, only names the first facet. Where there are fronts it is
 /// the first that leads elsewhere, and if there is none nobody has to go back.
 Order Conductor::after_seek(const Setup& setup, const Report& report) {
+  if (tries_each_state_) {
+    return after_given_state(report);
+  }
   const bool is_first = next_key_ == 0 && seeking_ == Seeking::kTrying;
   next_key_ = report.next_key();
   if (is_first && has_fronts() && next_key_ == 0) {
@@ -103,9 +115,18 @@ Order Conductor::after_seek(const Setup& setup, const Report& report) {
     is_newton_ = was_newton_;
     return settled(setup);
   }
-  if (is_first) {
-    return next_trial(setup);
+  constexpr std::uint32_t kPressing = mechanics::ContactState::kCodeCount - 1;
+  const bool has_few = report.count <= kFewFeet * kPressing && effort_.module_count <= kFewModules;
+  if (is_first && is_by_one_foot_ && has_few && (is_exact() || !is_one_sweep())) {
+    tries_each_state_ = true;
+    return seek(0);
   }
+  return is_first ? next_trial(setup) : try_states();
+}
+
+/// From the states that facets have now.
+Order Conductor::try_states() {
+  foot_ = 0;
   error_ = kUnbounded;
   error_best_ = kUnbounded;
   stagnation_count_ = 0;
@@ -118,8 +139,42 @@ Order Conductor::after_seek(const Setup& setup, const Report& report) {
   return has_fronts() ? tree_iteration() : is_one_sweep() ? first_iteration() : move(0);
 }
 
+/// First facets tell their keys one by one and open, by orders of no state; then all are open.
+Order Conductor::after_given_state(const Report& report) {
+  if ((next_key_ & kStateBits) != 0) {
+    return ask(Operation::kCorners);
+  }
+  const std::uint32_t key = report.next_key();
+  if (key == 0 || foot_count_ == kFewFeet) {
+    other_fails_ = key != 0 || foot_count_ != report.count;  // Two have the same key.
+    return try_states();
+  }
+  seen_[foot_count_] = key;
+  seen_[kFewFeet + foot_count_] = 0;
+  ++foot_count_;
+  return seek(key);
+}
+
+/// Facets of lesser keys go through their states for each state of those of greater ones, unless
+/// the robot stands without them.
+Order Conductor::next_state(const Setup& setup) {
+  for (; foot_ < foot_count_ && !other_fails_; ++foot_) {
+    std::uint32_t& code = seen_[kFewFeet + foot_];
+    trial_count_ = 0;
+    if (++code < mechanics::ContactState::kCodeCount) {
+      return seek(seen_[foot_] | code);
+    }
+    code = 0;
+  }
+  take_safest_method(setup);
+  return begin_anew(setup, true);
+}
+
 /// The next facet; behind the last one all go back to what was found.
 Order Conductor::next_trial(const Setup& setup) {
+  if (tries_each_state_) {
+    return next_state(setup);
+  }
   other_fails_ = other_fails_ || (next_key_ != 0 && trial_count_ == kTrialsMax);
   const bool has_next = next_key_ != 0 && !other_fails_;
   if (is_by_one_foot_ && !has_next) {
@@ -134,6 +189,10 @@ Order Conductor::next_trial(const Setup& setup) {
 /// A solution: another one, or, in the end, the first one again.
 Order Conductor::after_trial(const Setup& setup) {
   const bool is_other = is_by_one_foot_ || states_hash_ != found_hash_;
+  if (tries_each_state_) {
+    other_fails_ = true;
+    return next_trial(setup);
+  }
   if (seeking_ == Seeking::kTrying) {
     other_fails_ = other_fails_ || (is_other && mechanics::breaks(ratio_ + error_));
     return is_other && may_fall() && !other_fails_ ? ask(Operation::kCorners) : next_trial(setup);
@@ -149,10 +208,30 @@ Order Conductor::after_trial(const Setup& setup) {
   return settled(setup);
 }
 
+/// Of other states than those of the verdict: those of a trial, or with open feet freed, without
+/// which only weak springs may hold the robot.
+Order Conductor::after_corners_otherwise(const Setup& setup, bool is_standing) {
+  if (!is_seeking()) {
+    return is_standing ? decide() : finish(Verdict::kUndecided, Reason::kAmbiguousFeet);
+  }
+  if (tries_each_state_) {
+    return is_standing ? next_trial(setup) : try_states();
+  }
+  other_fails_ = !is_standing;
+  return next_trial(setup);
+}
+
 /// A trial whose states go round in circles has no solution. Of one that is lost, as the method did
 /// not converge, nobody knows: a safer method tries all again, and behind the safest one the robot
-/// is not safe. What was found first is found again from rest.
+/// is not safe. What was found first is found again from rest. Given states are tried once more
+/// from where that has led, as feet that tilt are not solved for by a method that is certain to
+/// converge.
 Order Conductor::leave_trial(const Setup& setup, bool is_lost) {
+  if (tries_each_state_ && is_lost && trial_count_ == 0) {
+    trial_count_ = 1;
+    has_history_ = false;
+    return try_states();
+  }
   is_trial_lost_ = is_trial_lost_ || is_lost;
   if (seeking_ == Seeking::kTrying) {
     const bool is_safest = is_by_one_foot_ || !is_one_sweep() || !has_gradients(setup);

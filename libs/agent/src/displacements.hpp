@@ -101,9 +101,27 @@ void press_alone(Facet& facet, const base::Cell& cell, int index, const Order& o
   facet.wanted = facet.state;
 }
 
+/// The same in a kSeek with kEachState, of keys that differ in their last four bits by the state.
+template <class Facet>
+void take_given_state(Facet& facet, const base::Cell& cell, int index, const Order& order,
+                      Report& report) {
+  const std::uint32_t own = (hash_of(cell, index) | (kStateBits + 1)) & ~kStateBits;
+  const std::uint32_t given = order.key() & ~kStateBits;
+  const auto code = static_cast<int>(order.key() & kStateBits);
+  if (own <= given) {
+    facet.state = mechanics::ContactState::from_code(own == given ? code : 0);
+  }
+  facet.wanted = facet.state;
+  facet.is_given = true;
+  ++report.count;
+  const bool is_next = own > given && (report.number == 0 || own < report.number);
+  report.number = is_next ? own : report.number;
+}
+
 /// A kSeek: all facets in the states that were found, but that of the order's key. A pressed one is
 /// opened, an open one presses all over. With kOneFoot all are open, but that of the order's key:
-/// it presses as the key says, with one edge or corner or all over.
+/// it presses as the key says, with one edge or corner or all over. With kEachState
+/// they are in the states that the keys of such orders have named.
 void seek_facets(Workspace& ws, const Order& order, Report& report);
 
 /// A kHold: releases open facets and holds pressed ones (count: how many changed); number: open but

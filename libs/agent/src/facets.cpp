@@ -129,7 +129,9 @@ void seek_facets(Surroundings& node, const ContactSetting& contact, const Vec6<d
   int index = 0;
   for (TouchingFacet& facet : facets_of(node)) {
     ++index;
-    if ((order.flags & kOneFoot) != 0) {
+    if (order.flags == kEachState) {
+      take_given_state(facet, cell, index, order, report);
+    } else if ((order.flags & kOneFoot) != 0) {
       press_alone(facet, cell, index, order, report);
     } else {
       const bool doubts = is_doubtful(contact, facet.state, to_local(node, facet, u));
@@ -273,6 +275,9 @@ mechanics::Corner corner_at(const Surroundings& node, const TouchingFacet& facet
 ContactState edges_of(const Surroundings& node, const TouchingFacet& facet,
                       const ContactSetting& contact, const Vec6<double>& u) {
   ContactState edges = facet.state;
+  if (facet.is_given) {
+    return edges;
+  }
   const mechanics::GroundFacet<double>& law = contact.facet;
   const Vec6<double> force =
       mechanics::contact_force(law, facet.state, facet.is_held, to_local(node, facet, u));

@@ -251,6 +251,8 @@ bool Sweep::is_good_resume(const Workspace& ws, const Order& order) const {
 bool Sweep::is_good_seek(const Workspace& ws, const Order& order) const {
   return !ws.setup.only_one_sweep &&
          (order.flags == 0 || order.flags == kOneFoot ||
+          (order.flags == kEachState &&
+           (order.key() & kStateBits) < mechanics::ContactState::kCodeCount) ||
           (order.flags == kRemember && order.key() == 0)) &&
          (course_ == Course::kElimination || course_ == Course::kPolynomial ||
           course_ == Course::kGradients || makes_fronts(course_));

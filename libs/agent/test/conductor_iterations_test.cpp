@@ -3,8 +3,15 @@
 //
 // The root's decisions with the one-sweep methods, and how it seeks further solutions, as
 // conductor_test.cpp has all others.
+#include <algorithm>
+#include <array>
+#include <set>
+#include <utility>
+#include <vector>
+
 #include "drive.hpp"
 #include "holdfast/agent/deflation.hpp"
+#include "holdfast/base/rng.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -273,6 +280,149 @@ TEST(Conductor, tries_every_facet_that_may_differ_or_is_not_safe) {
     return_to_found(drive, 0.9F);
     drive.expect_finished(count == 251 ? Verdict::kUndecided : Verdict::kSafe,
                           count == 251 ? Reason::kAmbiguousFeet : Reason::kHolds);
+  }
+}
+
+// ---- All states of few feet.
+
+using States = std::array<int, 3>;
+
+/// Three facets as they answer kSeek, and in which states the robot stands: in all those that hold
+/// one of some pairs, or more.
+struct ThreeFeet {
+  static constexpr int kCodeCount = mechanics::ContactState::kCodeCount;
+  static constexpr std::array<std::uint32_t, 3> kKeys = {0x30, 0x2010, 0x89abcde0};
+
+  explicit ThreeFeet(std::uint64_t seed) : rng(seed) {
+    for (std::size_t pair = 0; pair < 3; ++pair) {
+      for (int code = 0; code < kCodeCount * kCodeCount; ++code) {
+        const bool presses = code / kCodeCount > 0 && code % kCodeCount > 0;
+        if (presses && rng.below(3) > 0) {
+          held.insert({pair, code});
+        }
+      }
+    }
+  }
+
+  bool stands(const States& states) const {
+    bool is_any = false;
+    for (std::size_t i = 0; i < 3; ++i) {
+      is_any = is_any || held.contains({i, kCodeCount * states[i] + states[(i + 1) % 3]});
+    }
+    return is_any;
+  }
+
+  Report answer(const Order& seek) {
+    Report report{.count = 3};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t given = seek.key() & ~kStateBits;
+      const int code = kKeys[i] == given ? static_cast<int>(seek.key() & kStateBits) : 0;
+      now[i] = kKeys[i] <= given ? code : now[i];
+      report.number = kKeys[i] > given && report.number == 0 ? kKeys[i] : report.number;
+    }
+    return report;
+  }
+
+  base::Rng rng;
+  std::set<std::pair<std::size_t, int>> held;
+  States now{};
+};
+
+Report states_report(float error, std::uint16_t changed, std::uint32_t hash) {
+  return {.extent = changed, .number = hash, .reals = {error, 0.5F}};
+}
+
+/// Away from a level floor, whose states go round in circles.
+Drive circling_drive() {
+  Drive drive;
+  drive.to_mass();
+  drive.next({.flags = kUneven, .extent = 5, .count = kCensus, .number = kCensus});
+  if (drive.order.operation == Operation::kAngles) {
+    Report stands;
+    stands.feet.range = mechanics::SafeRange::kFull;
+    drive.next(stands);
+  }
+  for (const std::uint32_t hash : {1U, 2U, 1U}) {
+    drive.to_judgement();
+    drive.next(states_report(1e-9F, 1, hash));
+  }
+  return drive;
+}
+
+/// Goes through states until the unilateral law begins; `solve` answers what is solved for.
+template <class Solve>
+std::vector<States> go_through(ThreeFeet& feet, Drive& drive, Solve&& solve) {
+  EXPECT_EQ(drive.order.flags, kOneFoot);
+  drive.next({.count = 3 * (ThreeFeet::kCodeCount - 1), .number = 7});
+  std::vector<States> solved;
+  while (drive.order.operation != Operation::kBegin && solved.size() <= 1000) {
+    if (drive.order.operation == Operation::kSeek) {
+      EXPECT_EQ(drive.order.flags, kEachState);
+      drive.next(feet.answer(drive.order));
+    } else if (drive.order.operation == Operation::kCorners) {
+      Report report;
+      report.corners.stable = feet.stands(feet.now);
+      drive.next(report);
+    } else {
+      drive.to_judgement();
+      solved.push_back(feet.now);
+      drive.next(solve(solved));
+    }
+  }
+  EXPECT_EQ(drive.order.flags & kUnilateralLaw, kUnilateralLaw);
+  return solved;
+}
+
+void expect_end(Drive& drive, Verdict verdict, Reason reason) {
+  drive.to_judgement();
+  drive.next(states_report(1e-9F, 0, 3));
+  Report stands;
+  stands.corners.stable = true;
+  ASSERT_EQ(drive.order.operation, Operation::kCorners);
+  drive.next(stands);
+  drive.next({});
+  drive.next({.number = kCensus, .reals = {0.5F}});
+  drive.expect_finished(verdict, reason);
+}
+
+TEST(Conductor, solves_for_each_state_of_three_feet_in_which_the_robot_does_not_stand) {
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    ThreeFeet feet(seed);
+    std::set<States> falling;
+    for (int code = 0; code < 1000; ++code) {
+      const States states = {code % 10, code / 10 % 10, code / 100};
+      if (!feet.stands(states)) {
+        falling.insert(states);
+      }
+    }
+    Drive drive = circling_drive();
+    const std::vector<States> solved =
+        go_through(feet, drive, [](const auto&) { return states_report(1e-9F, 1, 4); });
+    EXPECT_EQ(std::set<States>(solved.begin(), solved.end()), falling);
+    EXPECT_EQ(solved.size(), falling.size());
+    expect_end(drive, Verdict::kSafe, Reason::kHolds);
+  }
+}
+
+/// One that the law prescribes for what it leads to falls; one that does not converge may be that,
+/// but is tried twice.
+TEST(Conductor, is_not_safe_where_one_of_all_states_falls_or_may) {
+  for (const std::size_t lost_count : {0U, 1U, 2U}) {
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+      ThreeFeet feet(seed);
+      Drive drive = circling_drive();
+      const std::size_t first = 1 + feet.rng.below(20);
+      const auto solved = go_through(feet, drive, [&](const std::vector<States>& so_far) {
+        const std::size_t count = so_far.size();
+        const bool is_lost = count >= first && count < first + lost_count;
+        const bool falls = lost_count == 0 && count == first;
+        return states_report(is_lost ? kNan : 1e-9F, falls ? 0 : 1, 4);
+      });
+      const bool is_safe = lost_count == 1;
+      EXPECT_EQ(solved.size() == std::max(first, first + lost_count - 1), !is_safe);
+      expect_end(drive, is_safe ? Verdict::kSafe : Verdict::kUndecided,
+                 is_safe ? Reason::kHolds : Reason::kAmbiguousFeet);
+    }
   }
 }
 

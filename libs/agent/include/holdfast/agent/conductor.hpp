@@ -238,13 +238,18 @@ class Conductor : private ConductorState {
   bool may_hang_by_foot() const;
   bool is_back() const;
   bool is_by_one_foot() const;
+  bool tries_each_state() const;
   Order begin_seeking();
   Order begin_one_foot();
   Order seek(std::uint32_t key, std::uint8_t flags = 0);
   Order after_seek(const Setup& setup, const Report& report);
+  Order try_states();
+  Order after_given_state(const Report& report);
+  Order next_state(const Setup& setup);
   Order next_trial(const Setup& setup);
   Order begin_anew(const Setup& setup, bool is_unilateral);
   Order after_trial(const Setup& setup);
+  Order after_corners_otherwise(const Setup& setup, bool is_standing);
   Order leave_trial(const Setup& setup, bool is_lost);
   bool seeks_again(const Setup& setup) const;
   Order seek_by_gradients(const Setup& setup);

@@ -140,7 +140,7 @@ struct Order {
 
   constexpr float b() const { return reals[2]; }
 
-  // kSeek: of a facet, or of its edge.
+  // kSeek: of a facet, or of its edge; with kEachState its last four bits are the facet's state.
   constexpr std::uint32_t key() const { return static_cast<std::uint32_t>(mass); }
 
   // kNext; `count` supports.
@@ -191,6 +191,9 @@ inline constexpr std::uint8_t kHasForces = 2;      ///< kNext: there is an equil
 inline constexpr std::uint8_t kIsUnilateral = 4;   ///< ... by the unilateral law.
 inline constexpr std::uint8_t kRemember = 1;       ///< kSeek: states in use are those found.
 inline constexpr std::uint8_t kOneFoot = 2;        ///< kSeek: one facet presses alone.
+/// kSeek: facets of lesser keys are open, those of greater ones stay as they are.
+inline constexpr std::uint8_t kEachState = kRemember | kOneFoot;
+inline constexpr std::uint32_t kStateBits = 15;  ///< Of its key.
 
 /// Does a kRenew tell of one plan more?
 constexpr bool is_new_plan(const Order& renew) {

@@ -44,6 +44,7 @@ struct TouchingFacet {
   mechanics::ContactState wanted = {};
   mechanics::ContactState found = {};  ///< As of a Node.
   bool is_doubtful = false;
+  bool is_given = false;  ///< The state is the root's, not that of the forces.
 };
 
 struct Environment;
