@@ -268,9 +268,7 @@ CoreResponse::Vecs CoreResponse::residual(const model::Loads& load,
     rest[i] = load[i];
   }
   const auto subtract = [&](std::size_t module, const Vec& force) {
-    for (std::size_t k = 0; k < 6; ++k) {
-      rest[module][k] -= force[k];
-    }
+    base::add_times(rest[module], -1, force);
   };
   for (const model::Connection& pair : core_.connections()) {
     const Vec& a = displacement[at(pair.a)];

@@ -3,7 +3,6 @@
 #include "new_modules.hpp"
 
 #include "dense.hpp"
-#include "holdfast/base/check.hpp"
 
 namespace holdfast::plan {
 namespace {
@@ -28,27 +27,6 @@ Mat6<double> product(const Mat6<double>& a, const Mat6<double>& b) {
 }
 
 Vec6<double> negative(const Vec6<double>& a) { return base::sum_of<double>({}, -1, a); }
-
-/// The inverse of a matrix of so many blocks in a row.
-std::vector<Mat6<double>> inverse_of(const std::vector<Mat6<double>>& blocks, std::size_t count) {
-  DenseSystem system(6 * count);
-  for (std::size_t i = 0; i < 6 * count; ++i) {
-    for (std::size_t k = 0; k < 6 * count; ++k) {
-      system.at(i, k) = blocks[i / 6 * count + k / 6].values[6 * (k % 6) + i % 6];
-    }
-  }
-  HOLDFAST_CHECK(system.factor());
-  std::vector<Mat6<double>> inverse(count * count);
-  for (std::size_t k = 0; k < 6 * count; ++k) {
-    std::vector<double> column(6 * count);
-    column[k] = 1;
-    system.solve(column);
-    for (std::size_t i = 0; i < 6 * count; ++i) {
-      inverse[i / 6 * count + k / 6].values[6 * (k % 6) + i % 6] = column[i];
-    }
-  }
-  return inverse;
-}
 
 }  // namespace
 
