@@ -284,9 +284,9 @@ CoreResponse::Vecs CoreResponse::residual(const model::Loads& load,
 
 /// None if digits are missing.
 const CoreResponse::Column* CoreResponse::column(std::size_t module) const {
-  const auto found = columns_.find(module);
-  if (found != columns_.end()) {
-    return &found->second;
+  std::unique_ptr<const Column>& known = columns_[module];
+  if (known) {
+    return known.get();
   }
   std::vector<model::Loads> loads;
   for (int k = 0; k < 6; ++k) {
@@ -298,9 +298,11 @@ const CoreResponse::Column* CoreResponse::column(std::size_t module) const {
   if (!six) {
     return nullptr;
   }
-  Column column;
-  std::ranges::move(*six, column.begin());
-  return &columns_.emplace(module, std::move(column)).first->second;
+  auto column = std::make_unique<Column>();
+  std::ranges::move(*six, column->begin());
+  known = std::move(column);
+  ++column_count_;
+  return known.get();
 }
 
 bool CoreResponse::knows(std::span<const std::size_t> modules) const {
@@ -319,8 +321,10 @@ Vec6<double> CoreResponse::answer(std::size_t module, const PointLoad& load) con
 
 std::optional<solver::Equilibrium> CoreResponse::solve(const model::Robot& robot) {
   const std::size_t column_bytes = 12 * sizeof(Vec) * core_.modules().size();
-  if (columns_.size() * column_bytes > kColumnBytesMax) {
+  if (column_count_ == 0 || column_count_ * column_bytes > kColumnBytesMax) {
     columns_.clear();
+    columns_.resize(core_.modules().size());
+    column_count_ = 0;
   }
   return Member(*this, robot).solve();
 }

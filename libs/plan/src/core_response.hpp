@@ -7,7 +7,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "holdfast/model/robot.hpp"
@@ -67,9 +66,9 @@ class CoreResponse final : public SolvedCore {
 
   model::Robot core_;
   std::unique_ptr<solver::LinearSystem> system_;
-  Answer own_;  ///< Under the core's loads.
-  /// As far as asked for; only ever looked up, never walked through.
-  mutable std::unordered_map<std::size_t, Column> columns_;
+  Answer own_;                                                  ///< Under the core's loads.
+  mutable std::vector<std::unique_ptr<const Column>> columns_;  ///< By module, where asked for;
+  mutable std::size_t column_count_ = 0;                        ///< so many.
 };
 
 /// A robot may have so many modules more than the core.
