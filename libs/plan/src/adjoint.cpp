@@ -216,9 +216,7 @@ void Adjoint::grow(std::size_t module) {
     Vec pull{};
     for_each_beam(module, [&](Direction direction, std::size_t other) {
       const Vec force = beam_.end_force(direction, {}, z(i, other));
-      for (std::size_t k = 0; k < 6; ++k) {
-        pull[k] -= force[k];
-      }
+      base::add_times(pull, -1, force);
     });
     own[i] = block_product(local_.stiffness(module).inverse, pull);
   }

@@ -74,15 +74,6 @@ std::vector<std::size_t> hosts_of(const std::vector<Site>& sites) {
   return hosts;
 }
 
-std::size_t yielding_rows(const Grown& grown) {
-  std::size_t count = 0;
-  for (const Vec6<double>& force : grown.facet_forces) {
-    count += static_cast<std::size_t>(
-        std::ranges::count_if(force, [](double component) { return component != 0; }));
-  }
-  return count;
-}
-
 }  // namespace
 
 std::unique_ptr<CandidateJudge> CandidateJudge::make(const model::RobotSpec& spec,
@@ -131,7 +122,8 @@ bool CandidateJudge::prepare(const RobotSymmetry& symmetry) {
   if (!(ratios_->error_share() <= kErrorShareMax)) {
     return false;
   }
-  contact_.emplace(robot_, spec_.floor, *influence_, options_.equilibrium.is_bonded, sites_);
+  core_.emplace(*influence_);
+  contact_.emplace(robot_, spec_.floor, *core_, options_.equilibrium.is_bonded, sites_);
   begins_stuck_ = is_stuck();
   find_inverse();
   find_sway();
@@ -172,7 +164,7 @@ bool CandidateJudge::stays_over_polygon(const Waiting& waiting, const Vec6<doubl
   }
   verdict::MovedMass moved = moved_alone_;
   moved.add(robot_.material().mass_kg, own[0], own[1]);
-  for (const PointLoad& point : loads_of(waiting.grown)) {
+  for (const PointLoad& point : waiting.grown.loads) {
     moved.x_kg_mm += base::dot(sway_[point.module][0], point.load);
     moved.y_kg_mm += base::dot(sway_[point.module][1], point.load);
   }
@@ -197,7 +189,7 @@ bool CandidateJudge::is_stuck() const {
 /// Whether candidates of a robot some of whose facets yield take less this way than by checks.
 bool CandidateJudge::pays() const {
   const auto alone = settled({});
-  const std::size_t rows = alone ? yielding_rows(*alone) : 0;
+  const std::size_t rows = alone ? alone->yielding_count : 0;
   return rows * rows * rows <= kCubedRowsPerModule * robot_.modules().size();
 }
 
@@ -225,17 +217,19 @@ bool CandidateJudge::has_host_for(const Site& site) const {
          });
 }
 
-const FacetInfluence* CandidateJudge::facets() const {
-  std::call_once(facets_made_, [&] {
-    facets_ = FacetInfluence::make(*influence_,
-                                   std::min(kFacetBytesMax, options_.equilibrium.memory_bytes_max));
+const InfluenceCore* CandidateJudge::core_with_columns() const {
+  std::call_once(columns_made_, [&] {
+    auto core = std::make_unique<InfluenceCore>(*influence_);
+    if (core->find_columns(std::min(kFacetBytesMax, options_.equilibrium.memory_bytes_max))) {
+      core_with_columns_ = std::move(core);
+    }
   });
-  return facets_.get();
+  return core_with_columns_.get();
 }
 
 std::optional<Grown> CandidateJudge::settled(const Site& site) const {
-  const FacetInfluence* const known = facets();
-  auto grown = known != nullptr ? contact_->settle(site, *known) : std::nullopt;
+  const InfluenceCore* const core = core_with_columns();
+  auto grown = core != nullptr ? contact_->settle(site, *core) : std::nullopt;
   return grown && grown->footing.is_certain ? std::move(grown) : std::nullopt;
 }
 
@@ -295,7 +289,7 @@ void CandidateJudge::judge_fully(std::vector<Waiting> waiting) const {
 void CandidateJudge::judge_together(std::span<Waiting> lanes, std::vector<Waiting>& again) const {
   std::vector<LaneBlock> more(influence_->slot_count());
   for (std::size_t lane = 0; lane < lanes.size(); ++lane) {
-    for (const PointLoad& point : loads_of(lanes[lane].grown)) {
+    for (const PointLoad& point : lanes[lane].grown.loads) {
       for (std::size_t k = 0; k < 6; ++k) {
         more[influence_->slot(point.module)].values[k][lane] += point.load[k];
       }
@@ -306,7 +300,7 @@ void CandidateJudge::judge_together(std::span<Waiting> lanes, std::vector<Waitin
   for (std::size_t lane = 0; lane < lanes.size(); ++lane) {
     Waiting& one = lanes[lane];
     const auto hosts = host_displacements(one, lane, more);
-    const Vec6<double> own = one.grown.node->displacement(hosts);
+    const Vec6<double> own = one.grown.node->displacements(hosts).front();
     if (!one.grown.is_settled) {
       one.grown.footing = contact_->footing_if_stuck(
           one.site, own, [&](std::size_t module) { return displacement(module, lane, more); });
@@ -337,16 +331,6 @@ void CandidateJudge::conclude(const Waiting& waiting, double ratio, const Vec6<d
       .judgement = {.verdict = waiting.grown.footing.is_slipping ? Verdict::kUndecided : loaded,
                     .load_ratio_max = ratio,
                     .margin_mm = waiting.margin_mm}};
-}
-
-/// On hosts and on facets that do not stick.
-std::vector<PointLoad> CandidateJudge::loads_of(const Grown& grown) const {
-  std::vector<PointLoad> loads = grown.host_loads;
-  for (std::size_t facet = 0; facet < grown.facet_forces.size(); ++facet) {
-    loads.push_back({.module = influence_->facets()[facet].module,
-                     .load = facets_->load(facet, grown.facet_forces[facet])});
-  }
-  return loads;
 }
 
 Vec6<double> CandidateJudge::displacement(std::size_t module, std::size_t lane,

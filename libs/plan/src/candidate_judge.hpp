@@ -9,12 +9,12 @@
 #include <span>
 #include <vector>
 
-#include "facet_influence.hpp"
 #include "grown_contact.hpp"
 #include "holdfast/plan/candidates.hpp"
 #include "holdfast/solver/influence.hpp"
 #include "holdfast/verdict/moved_mass.hpp"
 #include "holdfast/verdict/rigid_body.hpp"
+#include "influence_core.hpp"
 #include "lane_ratios.hpp"
 #include "robot_symmetry.hpp"
 #include "site.hpp"
@@ -48,7 +48,7 @@ class CandidateJudge {
   bool is_stuck() const;
   bool pays() const;
   bool has_host_for(const Site& site) const;
-  const FacetInfluence* facets() const;
+  const InfluenceCore* core_with_columns() const;
 
   std::optional<Waiting> look_at(const base::Cell& cell, std::optional<Candidate>& judged) const;
   std::optional<Grown> settled(const Site& site) const;
@@ -58,7 +58,6 @@ class CandidateJudge {
   void find_sway();
   bool stays_over_polygon(const Waiting& waiting, const base::Vec6<double>& own) const;
 
-  std::vector<PointLoad> loads_of(const Grown& grown) const;
   double new_ratio(const Site& site, std::span<const base::Vec6<double>> hosts,
                    const base::Vec6<double>& own) const;
   std::vector<base::Vec6<double>> host_displacements(const Waiting& waiting, std::size_t lane,
@@ -75,10 +74,11 @@ class CandidateJudge {
   bool begins_stuck_ = true;  ///< All facets of the robot without candidates are stuck.
   std::vector<Site> sites_;   ///< Where a module can be, by ascending cell.
   std::unique_ptr<solver::Influence> influence_;
+  std::optional<InfluenceCore> core_;
   std::optional<GrownContact> contact_;
   std::optional<LaneRatios> ratios_;
-  mutable std::once_flag facets_made_;
-  mutable std::unique_ptr<FacetInfluence> facets_;
+  mutable std::once_flag columns_made_;
+  mutable std::unique_ptr<InfluenceCore> core_with_columns_;  ///< None if they take too much.
 
   // Without the new module, where the polygon decides; else empty.
   verdict::MovedMass moved_alone_;

@@ -148,11 +148,7 @@ void ChangedForces::open_gap(std::size_t module, int direction, const Vec& u_mod
 
 void ChangedForces::weigh_facet(std::size_t index, const Vec& moved) {
   Spring& facet = facets_[index];
-  Vec lack = facet.change;
-  for (std::size_t i = 0; i < 6; ++i) {
-    lack[i] -= moved[i];
-  }
-  const double energy = energy_of(lack);
+  const double energy = energy_of(base::sum_of<double>(facet.change, -1, moved));
   energy_ += energy - facet.energy;
   facet.energy = energy;
   if (energy != 0) {

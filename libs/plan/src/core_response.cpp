@@ -6,27 +6,20 @@
 #include <cmath>
 #include <utility>
 
-#include "contact_path.hpp"
-#include "dense.hpp"
+#include "changed_robot.hpp"
 #include "holdfast/solver/largest.hpp"
-#include "holdfast/solver/second_state.hpp"
 #include "holdfast/verdict/assessment.hpp"
 
 namespace holdfast::plan {
 namespace {
 
 using base::at;
-using base::Mat6;
 using base::Vec6;
 using mechanics::ContactLaw;
-using mechanics::ContactState;
 using solver::FacetState;
 
 /// More feet in other states than the core's make the dense system slower than a check.
 constexpr std::size_t kChangedMax = 24;
-
-/// Steps over contact states; most robots settle in one or two.
-constexpr std::size_t kStepMax = 20;
 
 /// Columns of modules take no more than this.
 constexpr std::size_t kColumnBytesMax = std::size_t{256} << 20U;
@@ -50,379 +43,156 @@ bool is_close(const std::vector<Vec6<double>>& a, const std::vector<Vec6<double>
   return change[0] <= kColumnError * size[0] && change[1] <= kColumnError * size[1];
 }
 
-void add_block(DenseSystem& system, std::size_t row, std::size_t column, const Mat6<double>& block,
-               double sign) {
-  for (int i = 0; i < 6; ++i) {
-    for (int k = 0; k < 6; ++k) {
-      system.at(6 * row + static_cast<std::size_t>(i), 6 * column + static_cast<std::size_t>(k)) +=
-          sign * block.at(i, k);
-    }
+void add(std::vector<Vec6<double>>& sum, double factor, const std::vector<Vec6<double>>& more) {
+  for (std::size_t i = 0; factor != 0 && i < sum.size(); ++i) {
+    base::add_times(sum[i], factor, more[i]);
   }
-}
-
-Mat6<double> product(const Mat6<double>& a, const Mat6<double>& b) {
-  Mat6<double> c;
-  for (int i = 0; i < 6; ++i) {
-    for (int k = 0; k < 6; ++k) {
-      double sum = 0;
-      for (int j = 0; j < 6; ++j) {
-        sum += a.at(i, j) * b.at(j, k);
-      }
-      c.at(i, k) = sum;
-    }
-  }
-  return c;
-}
-
-Vec6<double> product(const Mat6<double>& a, const Vec6<double>& x) {
-  Vec6<double> y{};
-  for (int i = 0; i < 6; ++i) {
-    for (int k = 0; k < 6; ++k) {
-      y[static_cast<std::size_t>(i)] += a.at(i, k) * x[static_cast<std::size_t>(k)];
-    }
-  }
-  return y;
 }
 
 }  // namespace
 
 /// One robot, module by module beside the core.
-class CoreResponse::Grown {
+class CoreResponse::Member {
  public:
-  Grown(CoreResponse& whole, const model::Robot& robot) : whole_(whole), robot_(robot) {}
+  Member(const CoreResponse& core, const model::Robot& robot) : core_(core), robot_(robot) {}
 
   std::optional<solver::Equilibrium> solve() {
-    if (!match() || !add_loads() || !add_beams()) {
+    if (!match_modules() || !match_facets() || !match_connections()) {
       return std::nullopt;
     }
-    const auto settled =
-        settled_states(ContactStates(robot_.facets().size(), mechanics::kStuck), kStepMax,
-                       [&](const ContactStates& states) {
-                         states_ = states;
-                         return solve_for_states() ? std::optional(prescribed()) : std::nullopt;
-                       });
-    return settled && !is_doubtful() ? std::optional(equilibrium()) : std::nullopt;
+    change_.links = links_;
+    change_.new_modules = [this](std::span<const FacetState> own) {
+      return std::make_shared<const NewModules>(core_, links_, beams_, new_loads_, own);
+    };
+    const ChangedRobot changed(core_, change_, scale_n_);
+    const auto settled = changed.settle();
+    if (!settled || changed.may_have_others(*settled)) {
+      return std::nullopt;
+    }
+    return equilibrium(*settled);
   }
 
  private:
-  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  /// Where a module or a facet is, among the core's or the new ones.
+  struct Place {
+    bool is_new = false;
+    std::size_t index = 0;
+  };
 
-  /// Finds each module in the core, and each of its facets; false if the robot does not contain it.
-  bool match() {
+  /// Finds each module in the core; false if the robot does not contain it.
+  bool match_modules() {
     const auto modules = robot_.modules();
-    const auto core = whole_.core_.modules();
+    const auto core = core_.core_.modules();
     if (modules.size() < core.size() || modules.size() > core.size() + kNewMax) {
       return false;
     }
     std::size_t next = 0;
     for (std::size_t i = 0; i < modules.size(); ++i) {
-      const bool is_core = next < core.size() && modules[i].cell == core[next].cell;
-      core_of_.push_back(is_core ? next++ : kNone);
-      if (!is_core) {
-        new_.push_back(i);
+      const Vec& load = robot_.loads()[i];
+      scale_n_ += std::hypot(load[0], load[1], load[2]);
+      if (next < core.size() && modules[i].cell == core[next].cell) {
+        const Vec& before = core_.core_.loads()[next];
+        if (load != before) {
+          change_.loads.push_back({.module = next, .load = base::sum_of<double>(load, -1, before)});
+        }
+        places_.push_back({.is_new = false, .index = next++});
+        continue;
       }
-    }
-    return next == core.size() && match_facets();
-  }
-
-  bool match_facets() {
-    const auto core = whole_.core_.facets();
-    std::size_t next = 0;
-    for (const model::Facet& facet : robot_.facets()) {
-      const std::size_t module = core_of_[at(facet.module)];
-      const bool is_core = module != kNone;
-      if (is_core && (next == core.size() || at(core[next].module) != module ||
-                      core[next].direction != facet.direction)) {
+      if (modules[i].support == model::Support::kFixed) {
         return false;
       }
-      facet_of_core_.push_back(is_core ? next++ : kNone);
+      places_.push_back({.is_new = true, .index = new_loads_.size()});
+      new_loads_.push_back(load);
     }
     return next == core.size();
   }
 
-  /// The place of a module among those that the dense system is about.
-  std::size_t place_of(std::size_t module) {
-    const auto found = std::ranges::find(special_, module);
-    if (found == special_.end()) {
-      special_.push_back(module);
-      return special_.size() - 1;
-    }
-    return static_cast<std::size_t>(found - special_.begin());
-  }
-
-  bool add_loads() {
-    for (std::size_t i = 0; i < core_of_.size(); ++i) {
-      const Vec& load = robot_.loads()[i];
-      if (core_of_[i] == kNone) {
-        loads_.emplace_back(place_of(i), load);
-        continue;
-      }
-      const Vec& before = whole_.core_.loads()[core_of_[i]];
-      if (load != before) {
-        Vec more = load;
-        for (std::size_t k = 0; k < 6; ++k) {
-          more[k] -= before[k];
-        }
-        loads_.emplace_back(place_of(i), more);
+  bool match_facets() {
+    const auto core = core_.core_.facets();
+    std::size_t next = 0;
+    for (const model::Facet& facet : robot_.facets()) {
+      const Place& module = places_[at(facet.module)];
+      facets_.push_back({.is_new = module.is_new, .index = next});
+      if (module.is_new) {
+        facets_.back().index = core.size() + change_.facets.size();
+        change_.facets.push_back({.module = module.index,
+                                  .direction = facet.direction,
+                                  .is_bonded = facet.is_bonded(),
+                                  .state = {}});
+      } else if (next == core.size() || at(core[next].module) != module.index ||
+                 core[next++].direction != facet.direction) {
+        return false;
       }
     }
-    return special_.size() <= kChangedMax;
+    return next == core.size();
   }
 
-  /// Beams that the core does not have; all of them must end at a new module.
-  bool add_beams() {
+  /// All that the core does not have must end at a new module.
+  bool match_connections() {
     std::size_t shared_count = 0;
     for (const model::Connection& pair : robot_.connections()) {
-      const bool is_core = core_of_[at(pair.a)] != kNone && core_of_[at(pair.b)] != kNone;
-      shared_count += is_core ? 1 : 0;
-      if (!is_core) {
-        place_of(at(pair.a));
-        place_of(at(pair.b));
-        beams_.push_back(pair);
+      const Place& a = places_[at(pair.a)];
+      const Place& b = places_[at(pair.b)];
+      if (a.is_new && b.is_new) {
+        beams_.push_back({.a = static_cast<std::int32_t>(a.index),
+                          .b = static_cast<std::int32_t>(b.index),
+                          .direction = pair.direction});
+      } else if (b.is_new) {
+        links_.push_back({.host = a.index, .direction = pair.direction, .to = b.index});
+      } else if (a.is_new) {
+        links_.push_back(
+            {.host = b.index, .direction = base::opposite(pair.direction), .to = a.index});
       }
+      shared_count += a.is_new || b.is_new ? 0 : 1;
     }
-    return shared_count == whole_.core_.connections().size();
+    return shared_count == core_.core_.connections().size();
   }
 
-  ContactState state_of_core(std::size_t facet) const {
-    const std::size_t core = facet_of_core_[facet];
-    return core == kNone ? mechanics::kStuck : whole_.system_->facets()[core].state;
-  }
-
-  FacetState facet_state(std::size_t facet, const ContactState& state) const {
-    const model::Facet& found = robot_.facets()[facet];
-    return {.module = at(found.module),
-            .direction = found.direction,
-            .is_bonded = found.is_bonded(),
-            .state = state};
-  }
-
-  /// S, by places of special modules.
-  void stiffen(std::vector<Mat6<double>>& s, std::size_t count) {
-    const model::LatticeBeam<double>& beam = whole_.system_->beam();
-    const auto block = [&](std::size_t row, std::size_t column) -> Mat6<double>& {
-      return s[row * count + column];
-    };
-    for (const model::Connection& pair : beams_) {
-      const std::size_t a = place_of(at(pair.a));
-      const std::size_t b = place_of(at(pair.b));
-      const base::Direction back = base::opposite(pair.direction);
-      base::add_to(block(a, a), beam.block_11(pair.direction));
-      base::add_to(block(a, b), beam.block_12(pair.direction));
-      base::add_to(block(b, b), beam.block_11(back));
-      base::add_to(block(b, a), beam.block_12(back));
-    }
-    const auto& law = whole_.system_->law();
-    for (std::size_t i = 0; i < states_.size(); ++i) {
-      if (facet_of_core_[i] != kNone && states_[i] == state_of_core(i)) {
-        continue;
-      }
-      const std::size_t place = place_of(at(robot_.facets()[i].module));
-      base::add_to(block(place, place), law.tangent(facet_state(i, states_[i])));
-      if (facet_of_core_[i] != kNone) {
-        Mat6<double> before = law.tangent(facet_state(i, state_of_core(i)));
-        for (double& value : before.values) {
-          value = -value;
-        }
-        base::add_to(block(place, place), before);
-      }
-    }
-  }
-
-  /// U of special module `column` at special module `row`, both of the core.
-  Mat6<double> flexibility(std::size_t row, std::size_t column) const {
-    Mat6<double> g;
-    for (int k = 0; k < 6; ++k) {
-      const Vec& u =
-          (*columns_[column])[static_cast<std::size_t>(k)].refined[core_of_[special_[row]]];
-      for (int i = 0; i < 6; ++i) {
-        g.at(i, k) = u[static_cast<std::size_t>(i)];
-      }
-    }
-    return g;
-  }
-
-  /// Displacements of the special modules, then of all, for the present states.
-  bool solve_for_states() {
-    for (std::size_t i = 0; i < states_.size(); ++i) {
-      if (facet_of_core_[i] == kNone || states_[i] != state_of_core(i)) {
-        place_of(at(robot_.facets()[i].module));
-      }
-    }
-    const std::size_t count = special_.size();
-    if (count > kChangedMax || !find_columns()) {
-      return false;
-    }
-    std::vector<Mat6<double>> s(count * count);
-    stiffen(s, count);
-    std::vector<Vec> p(count, Vec{});
-    for (const auto& [place, load] : loads_) {
-      base::add_to(p[place], load);
-    }
-    DenseSystem system(6 * count);
-    std::vector<double> x(6 * count, 0.0);
-    for (std::size_t row = 0; row < count; ++row) {
-      fill_row(row, s, p, system, x);
-    }
-    if (!system.factor()) {
-      return false;
-    }
-    system.solve(x);
-    combine(x, s, p);
-    return true;
-  }
-
-  bool find_columns() {
-    columns_.assign(special_.size(), nullptr);
-    for (std::size_t i = 0; i < special_.size(); ++i) {
-      const std::size_t core = core_of_[special_[i]];
-      if (core != kNone) {
-        columns_[i] = whole_.column(core);
-        if (columns_[i] == nullptr) {
-          return false;
-        }
-      }
-    }
-    return true;
-  }
-
-  /// u_i + sum over j of G_ij (S u)_j = u_0i + sum of G_ij p_j; of a new module (S u)_m = f_m.
-  void fill_row(std::size_t row, const std::vector<Mat6<double>>& s, const std::vector<Vec>& p,
-                DenseSystem& system, std::vector<double>& x) {
-    const std::size_t count = special_.size();
-    const auto add_right = [&](const Vec& right) {
+  solver::Equilibrium equilibrium(const Changed& settled) const {
+    Answer sum = core_.own_;
+    for (const PointLoad& load : settled.loads) {
+      const Column& column = *core_.column(load.module);
       for (std::size_t k = 0; k < 6; ++k) {
-        x[6 * row + k] += right[k];
-      }
-    };
-    if (columns_[row] == nullptr) {
-      for (std::size_t column = 0; column < count; ++column) {
-        add_block(system, row, column, s[row * count + column], 1);
-      }
-      add_right(p[row]);
-      return;
-    }
-    for (std::size_t k = 0; k < 6; ++k) {
-      system.at(6 * row + k, 6 * row + k) = 1;
-    }
-    add_right(whole_.own_.refined[core_of_[special_[row]]]);
-    for (std::size_t j = 0; j < count; ++j) {
-      if (columns_[j] == nullptr) {
-        continue;
-      }
-      const Mat6<double> g = flexibility(row, j);
-      for (std::size_t column = 0; column < count; ++column) {
-        const Mat6<double>& block = s[j * count + column];
-        if (largest_of(block) > 0) {
-          add_block(system, row, column, product(g, block), 1);
-        }
-      }
-      add_right(product(g, p[j]));
-    }
-  }
-
-  static double largest_of(const Mat6<double>& block) {
-    double size = 0;
-    for (const double value : block.values) {
-      size = std::max(size, std::abs(value));
-    }
-    return size;
-  }
-
-  void combine(const std::vector<double>& x, const std::vector<Mat6<double>>& s,
-               const std::vector<Vec>& p) {
-    const std::size_t count = special_.size();
-    const auto part = [&](std::size_t place) {
-      Vec u{};
-      std::copy_n(x.begin() + static_cast<std::ptrdiff_t>(6 * place), 6, u.begin());
-      return u;
-    };
-    Answer sum = whole_.own_;
-    for (std::size_t j = 0; j < count; ++j) {
-      if (columns_[j] == nullptr) {
-        continue;
-      }
-      Vec r = p[j];
-      for (std::size_t k = 0; k < count; ++k) {
-        const Vec force = product(s[j * count + k], part(k));
-        for (std::size_t i = 0; i < 6; ++i) {
-          r[i] -= force[i];
-        }
-      }
-      for (std::size_t k = 0; k < 6; ++k) {
-        add(sum.refined, r[k], (*columns_[j])[k].refined);
-        add(sum.rough, r[k], (*columns_[j])[k].rough);
+        add(sum.refined, load.load[k], column[k].refined);
+        add(sum.rough, load.load[k], column[k].rough);
       }
     }
-    displacement_.assign(core_of_.size(), Vec{});
-    alternative_.assign(core_of_.size(), Vec{});
-    for (std::size_t i = 0; i < core_of_.size(); ++i) {
-      const bool is_core = core_of_[i] != kNone;
-      displacement_[i] = is_core ? sum.refined[core_of_[i]] : part(place_of(i));
-      alternative_[i] = is_core ? sum.rough[core_of_[i]] : displacement_[i];
+    Vecs hosts;
+    for (const Link& link : links_) {
+      hosts.push_back(sum.refined[link.host]);
     }
-  }
-
-  static void add(Vecs& sum, double factor, const Vecs& more) {
-    if (factor == 0) {
-      return;
-    }
-    for (std::size_t i = 0; i < sum.size(); ++i) {
-      base::add_times(sum[i], factor, more[i]);
-    }
-  }
-
-  ContactStates prescribed() const {
-    ContactStates states;
-    for (std::size_t i = 0; i < states_.size(); ++i) {
-      const FacetState facet = facet_state(i, states_[i]);
-      states.push_back(whole_.system_->law().state_at(facet, displacement_[facet.module]));
-    }
-    return states;
-  }
-
-  bool is_doubtful() const {
-    for (std::size_t i = 0; i < states_.size(); ++i) {
-      const FacetState facet = facet_state(i, states_[i]);
-      const Vec force = whole_.system_->law().trial_force(facet, displacement_[facet.module]);
-      if (solver::may_have_second_state(states_[i], force)) {
-        return true;
-      }
-    }
-    return false;
-  }
-
-  solver::Equilibrium equilibrium() {
+    const Vecs moved = settled.new_modules->displacements(hosts);
     solver::Equilibrium found;
     found.outcome = solver::Outcome::kSettled;
     found.law = ContactLaw::kRegularised;
-    found.gamma = whole_.system_->ground().gamma;
-    found.displacement = std::move(displacement_);
-    found.alternative = std::move(alternative_);
-    found.contact = states_;
-    for (std::size_t i = 0; i < states_.size(); ++i) {
-      const FacetState facet = facet_state(i, states_[i]);
-      Vec force = whole_.system_->law().force(facet, found.displacement[facet.module]);
-      for (double& component : force) {
-        component = -component;
-      }
-      found.facet_force.push_back(force);
+    found.gamma = core_.system_->ground().gamma;
+    found.displacement.reserve(places_.size());
+    found.alternative.reserve(places_.size());
+    for (const Place& module : places_) {
+      found.displacement.push_back((module.is_new ? moved : sum.refined)[module.index]);
+      found.alternative.push_back((module.is_new ? moved : sum.rough)[module.index]);
+    }
+    for (std::size_t i = 0; i < facets_.size(); ++i) {
+      FacetState facet = facets_[i].is_new
+                             ? change_.facets[facets_[i].index - core_.facets().size()]
+                             : core_.facets()[facets_[i].index];
+      facet.state = settled.states[facets_[i].index];
+      found.contact.push_back(facet.state);
+      const Vec& u = found.displacement[at(robot_.facets()[i].module)];
+      found.facet_force.push_back(base::sum_of<double>({}, -1, core_.law().force(facet, u)));
     }
     return found;
   }
 
-  CoreResponse& whole_;
+  const CoreResponse& core_;
   const model::Robot& robot_;
-  std::vector<std::size_t> core_of_;                ///< By module; kNone of new ones.
-  std::vector<std::size_t> new_;                    ///< Modules.
-  std::vector<std::size_t> facet_of_core_;          ///< By facet; kNone of those of new modules.
-  std::vector<std::size_t> special_;                ///< Modules of the dense system.
-  std::vector<std::pair<std::size_t, Vec>> loads_;  ///< By place in special_.
-  std::vector<model::Connection> beams_;            ///< That end at a new module.
-  std::vector<const Column*> columns_;              ///< By place; null of new modules.
-  ContactStates states_;
-  Vecs displacement_;
-  Vecs alternative_;
+  std::vector<Place> places_;  ///< By module.
+  std::vector<Place> facets_;  ///< By facet: in the states of Changed.
+  std::vector<Link> links_;
+  std::vector<model::Connection> beams_;  ///< Between new modules.
+  Vecs new_loads_;
+  Change change_;
+  double scale_n_ = 0;  ///< All loads together.
 };
 
 std::unique_ptr<CoreResponse> CoreResponse::make(model::Robot core,
@@ -463,7 +233,7 @@ bool CoreResponse::prepare(const solver::EquilibriumOptions& options) {
 }
 
 std::optional<std::vector<CoreResponse::Answer>> CoreResponse::answers(
-    const std::vector<model::Loads>& loads) {
+    const std::vector<model::Loads>& loads) const {
   auto rough = system_->solve_each(loads, 0);
   if (!rough) {
     return std::nullopt;
@@ -498,9 +268,7 @@ CoreResponse::Vecs CoreResponse::residual(const model::Loads& load,
     rest[i] = load[i];
   }
   const auto subtract = [&](std::size_t module, const Vec& force) {
-    for (std::size_t k = 0; k < 6; ++k) {
-      rest[module][k] -= force[k];
-    }
+    base::add_times(rest[module], -1, force);
   };
   for (const model::Connection& pair : core_.connections()) {
     const Vec& a = displacement[at(pair.a)];
@@ -515,10 +283,10 @@ CoreResponse::Vecs CoreResponse::residual(const model::Loads& load,
 }
 
 /// None if digits are missing.
-const CoreResponse::Column* CoreResponse::column(std::size_t module) {
-  const auto found = columns_.find(module);
-  if (found != columns_.end()) {
-    return &found->second;
+const CoreResponse::Column* CoreResponse::column(std::size_t module) const {
+  std::unique_ptr<const Column>& known = columns_[module];
+  if (known) {
+    return known.get();
   }
   std::vector<model::Loads> loads;
   for (int k = 0; k < 6; ++k) {
@@ -530,17 +298,35 @@ const CoreResponse::Column* CoreResponse::column(std::size_t module) {
   if (!six) {
     return nullptr;
   }
-  Column column;
-  std::ranges::move(*six, column.begin());
-  return &columns_.emplace(module, std::move(column)).first->second;
+  auto column = std::make_unique<Column>();
+  std::ranges::move(*six, column->begin());
+  known = std::move(column);
+  ++column_count_;
+  return known.get();
+}
+
+bool CoreResponse::knows(std::span<const std::size_t> modules) const {
+  return modules.size() <= kChangedMax &&
+         std::ranges::all_of(modules, [&](std::size_t each) { return column(each) != nullptr; });
+}
+
+Vec6<double> CoreResponse::answer(std::size_t module, const PointLoad& load) const {
+  const Column& six = *column(load.module);
+  Vec u{};
+  for (std::size_t k = 0; k < 6; ++k) {
+    base::add_times(u, load.load[k], six[k].refined[module]);
+  }
+  return u;
 }
 
 std::optional<solver::Equilibrium> CoreResponse::solve(const model::Robot& robot) {
   const std::size_t column_bytes = 12 * sizeof(Vec) * core_.modules().size();
-  if (columns_.size() * column_bytes > kColumnBytesMax) {
+  if (column_count_ == 0 || column_count_ * column_bytes > kColumnBytesMax) {
     columns_.clear();
+    columns_.resize(core_.modules().size());
+    column_count_ = 0;
   }
-  return Grown(*this, robot).solve();
+  return Member(*this, robot).solve();
 }
 
 }  // namespace holdfast::plan

@@ -579,11 +579,7 @@ void EnergyBound::bear_by_section() {
     if (node.way.to < 0) {
       continue;  // The first, where nothing remains.
     }
-    Vec minus = section_->share(i, resultant_);
-    for (double& value : minus) {
-      value = -value;
-    }
-    base::add_to(rest[i], minus);
+    base::add_times(rest[i], -1, section_->share(i, resultant_));
     const Way& way = node.way;
     changes_.hand_on_only(module, way.direction, rest[i]);
     base::add_to(rest[base::at(section_place_[base::at(way.to)])], rest[i]);

@@ -62,7 +62,7 @@ constexpr int kNear = 2;
 
 Direction direction_of(int index) { return static_cast<Direction>(index); }
 
-Vec6<double> difference(const Vec6<double>& a, const Vec6<double>& b) {
+Vec6<double> difference_of(const Vec6<double>& a, const Vec6<double>& b) {
   Vec6<double> sum = a;
   for (std::size_t i = 0; i < 6; ++i) {
     sum[i] -= b[i];
@@ -178,7 +178,7 @@ void FollowedRobot::relax(const std::vector<std::size_t>& modules) {
       const auto own = std::span(beams).subspan(begin, places[i].beam_end - begin);
       const Vec next =
           block_product(places[i].stiffness->inverse, local_.pull(modules[i], own, u_));
-      const Vec step = difference(next, u_[modules[i]]);
+      const Vec step = difference_of(next, u_[modules[i]]);
       gain += base::dot(step, block_product(places[i].stiffness->sum, step));
       u_[modules[i]] = next;
     };
@@ -275,7 +275,7 @@ std::vector<FollowedRobot::Vec> FollowedRobot::balance(std::size_t first,
     if (spring.other >= 0 &&
         !(is_new(at(spring.other)) && place_in_new(at(spring.other)) >= first)) {
       put(at(spring.other),
-          difference({}, beam_.end_force(back, u_[at(spring.other)], u_[spring.module])));
+          difference_of({}, beam_.end_force(back, u_[at(spring.other)], u_[spring.module])));
     }
   }
   const double pitch = target_.material().pitch_mm;
@@ -285,8 +285,8 @@ std::vector<FollowedRobot::Vec> FollowedRobot::balance(std::size_t first,
     const NewModule& added = new_[i];
     const std::size_t module = added.module;
     if (i >= first) {
-      base::add_to(rest[i], difference(local_.pull(module, u_),
-                                       block_product(local_.stiffness(module).sum, u_[module])));
+      base::add_to(rest[i], difference_of(local_.pull(module, u_),
+                                          block_product(local_.stiffness(module).sum, u_[module])));
     }
     const auto begin = i >= first ? springs.begin() : springs_.begin();
     auto& next = i >= first ? own : old;
@@ -387,7 +387,7 @@ bool FollowedRobot::find_motion(std::vector<Vec> change, double coarseness) {
   change_ = std::move(change);
   motion_ = system_->displacement();
   for (std::size_t i = 0; i < motion_.size(); ++i) {
-    motion_[i] = difference(motion_[i], moved_[i]);
+    motion_[i] = difference_of(motion_[i], moved_[i]);
   }
   return true;
 }
@@ -441,7 +441,7 @@ const std::vector<FollowedRobot::Loaded>& FollowedRobot::most_loaded_first() {
     return loaded_;
   }
   const auto still = [&](std::size_t module) {
-    return difference(u_[module], moved_[at(place_[module])]);
+    return difference_of(u_[module], moved_[at(place_[module])]);
   };
   for (const Element element : elements_) {
     const std::size_t module = at(element);
@@ -503,7 +503,7 @@ bool FollowedRobot::move(std::vector<Vec> change, double coarseness) {
 double FollowedRobot::gap_energy(const std::vector<Vec>& gap) const {
   double energy = 0;
   for (std::size_t i = 0; i < gap.size(); ++i) {
-    const Vec lack = difference(springs_[i].force, gap[i]);
+    const Vec lack = difference_of(springs_[i].force, gap[i]);
     energy += energy_of(lack, lack);
   }
   return energy;
@@ -538,7 +538,7 @@ std::optional<FollowedRobot::Result> FollowedRobot::improve() {
     u_[new_[i].module] = still[i];
   }
   for (std::size_t i = 0; i < change.size(); ++i) {
-    change[i] = difference(change[i], given_[i]);
+    change[i] = difference_of(change[i], given_[i]);
   }
   const double coarseness = std::max(1.0, kGapShare * std::sqrt(gap_energy(gap)) / unit_);
   if (!find_motion(std::move(change), coarseness)) {
@@ -553,9 +553,9 @@ std::optional<FollowedRobot::Result> FollowedRobot::improve() {
   double along = 0;
   double length = 0;
   for (std::size_t i = 0; i < gap.size(); ++i) {
-    lack.push_back(difference(springs_[i].force, gap[i]));
-    more.push_back(
-        difference(difference(springs[i].force, springs_[i].force), difference(moved[i], gap[i])));
+    lack.push_back(difference_of(springs_[i].force, gap[i]));
+    more.push_back(difference_of(difference_of(springs[i].force, springs_[i].force),
+                                 difference_of(moved[i], gap[i])));
     along += energy_of(lack[i], more[i]);
     length += energy_of(more[i], more[i]);
   }
@@ -566,11 +566,11 @@ std::optional<FollowedRobot::Result> FollowedRobot::improve() {
       std::abs(factor) * solution_error_ + (was_rough ? 0 : std::abs(1 - factor) * motion_error_);
   for (std::size_t i = 0; i < new_.size(); ++i) {
     Vec& u = u_[new_[i].module];
-    base::add_times(u, factor - 1, difference(u, still[i]));
+    base::add_times(u, factor - 1, difference_of(u, still[i]));
   }
   double energy = 0;
   for (std::size_t i = 0; i < springs.size(); ++i) {
-    base::add_times(springs_[i].force, factor, difference(springs[i].force, springs_[i].force));
+    base::add_times(springs_[i].force, factor, difference_of(springs[i].force, springs_[i].force));
     base::add_times(lack[i], factor, more[i]);
     energy += energy_of(lack[i], lack[i]);
   }

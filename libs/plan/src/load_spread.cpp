@@ -31,7 +31,40 @@ constexpr std::size_t kPartSizeMax = 1000;
 /// Of the load, what the solution may leave unbalanced; rounding leaves about 1e-12.
 constexpr double kResidualMax = 1e-9;
 
+/// So many are known: each takes one or two megabytes.
+constexpr std::size_t kPartCountMax = 32;
+
+std::span<const std::size_t> inner_of(const SpreadPart& part) {
+  return std::span(part.modules).first(part.inner_count);
+}
+
 }  // namespace
+
+void SpreadParts::add(Part part) {
+  if (parts_.size() == kPartCountMax) {
+    remove_first();
+  }
+  for (const std::size_t module : inner_of(*part)) {
+    last_[module] = part;
+  }
+  parts_.push_back(std::move(part));
+}
+
+void SpreadParts::clear() {
+  while (!parts_.empty()) {
+    remove_first();
+  }
+}
+
+void SpreadParts::remove_first() {
+  const Part first = std::move(parts_.front());
+  parts_.pop_front();
+  for (const std::size_t module : inner_of(*first)) {
+    if (last_[module] == first) {
+      last_[module].reset();
+    }
+  }
+}
 
 LoadSpread::LoadSpread(const model::Robot& target, std::size_t width_min)
     : target_(&target),

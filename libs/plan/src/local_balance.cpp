@@ -6,7 +6,6 @@
 
 #include "block_product.hpp"
 #include "dense.hpp"
-#include "holdfast/base/check.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/model/facet_starts.hpp"
 #include "holdfast/model/material.hpp"
@@ -15,18 +14,6 @@ namespace holdfast::plan {
 
 using base::at;
 using base::Direction;
-using base::Mat6;
-using base::Vec6;
-
-namespace {
-
-void subtract(Vec6<double>& rest, const Vec6<double>& force) {
-  for (std::size_t i = 0; i < 6; ++i) {
-    rest[i] -= force[i];
-  }
-}
-
-}  // namespace
 
 LocalBalance::LocalBalance(const model::Robot& target)
     : target_(&target),
@@ -64,19 +51,8 @@ const LocalBalance::Stiffness& LocalBalance::stiffness(std::size_t module) {
                    blocks_.block_11(static_cast<Direction>(bit < kFacets ? bit : bit - kFacets)));
     }
   }
-  DenseSystem system(6);
-  for (int i = 0; i < 6; ++i) {
-    for (int k = 0; k < 6; ++k) {
-      system.at(at(i), at(k)) = known.sum.at(i, k);
-    }
-  }
   // What touches something is held in all directions.
-  HOLDFAST_CHECK(system.factor());
-  for (int k = 0; k < 6; ++k) {
-    Vec6<double> column = base::unit<double>(k);
-    system.solve(column);
-    std::ranges::copy(column, known.inverse.values.begin() + 6 * k);
-  }
+  known.inverse = inverse_of({known.sum}, 1).front();
   return known;
 }
 
@@ -94,7 +70,7 @@ LocalBalance::Vec LocalBalance::pull(std::size_t module, const std::vector<Vec>&
   for (const Direction direction : base::directions(target_->lattice())) {
     const std::int32_t other = neighbour(module, base::index(direction));
     if (other != model::Robot::kNoNeighbour) {
-      subtract(rest, block_product(blocks_.block_12(direction), u[at(other)]));
+      base::add_times(rest, -1, block_product(blocks_.block_12(direction), u[at(other)]));
     }
   }
   return rest;
@@ -104,7 +80,7 @@ LocalBalance::Vec LocalBalance::pull(std::size_t module, std::span<const Beam> b
                                      const std::vector<Vec>& u) const {
   Vec rest = target_->loads()[module];
   for (const Beam& beam : beams) {
-    subtract(rest, block_product(*beam.block_12, u[beam.other]));
+    base::add_times(rest, -1, block_product(*beam.block_12, u[beam.other]));
   }
   return rest;
 }

@@ -187,10 +187,7 @@ SectionResponse::Vec SectionResponse::displacement(std::size_t module,
                                                    const Resultant& resultant) const {
   Vec sum{};
   for (std::size_t k = 0; k < 3; ++k) {
-    const Vec& unit = responses_[k].displacement[at(place_[module])];
-    for (std::size_t i = 0; i < 6; ++i) {
-      sum[i] += resultant[k] * unit[i];
-    }
+    base::add_times(sum, resultant[k], responses_[k].displacement[at(place_[module])]);
   }
   return sum;
 }

@@ -17,6 +17,7 @@ namespace holdfast::plan {
 struct Link {
   std::size_t host = 0;
   base::Direction direction = base::Direction::kPlusX;
+  std::size_t to = 0;  ///< Which of the new modules, where there are several.
 };
 
 /// What a module in a cell would touch.

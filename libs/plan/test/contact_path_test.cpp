@@ -3,9 +3,9 @@
 
 // Paths over contact states end where states prescribe themselves, and nowhere else.
 
-#include "contact_path.hpp"
-
 #include <gtest/gtest.h>
+
+#include "changed_robot.hpp"
 
 namespace holdfast::plan {
 namespace {
