@@ -12,8 +12,11 @@ finish() {
 }
 trap finish EXIT
 
-# inside COMMANDS   runs them there
-inside() { chroot "$root" env DEBIAN_FRONTEND=noninteractive sh -euc "$1"; }
+# inside COMMANDS   runs them there, without what this shell's environment says of its own tools
+inside() {
+  chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 \
+    DEBIAN_FRONTEND=noninteractive sh -euc "$1"
+}
 
 debootstrap --variant=minbase bookworm "$root" >/dev/null
 mount -t proc proc "$root/proc"

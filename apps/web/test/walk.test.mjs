@@ -4,7 +4,7 @@
 // A walk of random actions of a user over one page, each after any other. After each of them the page says what
 // the program says of the robot that the page's own state describes, and what a page that has just opened the
 // saved file says and shows. HOLDFAST_WALK is the number of actions, HOLDFAST_SEED another walk; HOLDFAST_DEEDS
-// names what is done, by commas, and after every HOLDFAST_FRESH actions the file is opened anew.
+// names what is done in the first walk, by commas, and after every HOLDFAST_FRESH actions the file is opened anew.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -111,6 +111,18 @@ const press = (page, id) =>
 
 const waitFor = (page, condition, ms) => page.waitForFunction(condition, undefined, { timeout: ms }).catch(() => undefined);
 
+/** A number that is not refused is the one that its field shows from then on; the field shows what the robot has. */
+async function expectTaken(field, name, text) {
+  const isRefused = await field.evaluate((input) => Boolean(input.ariaInvalid));
+  const typed = Number(text);
+  // A slope follows from the vector, which has many of them.
+  if (isRefused || text.trim() === '' || /^(Slope|Downhill|Strength)/.test(name)) {
+    return;
+  }
+  const shown = Number(await field.inputValue());
+  assert.ok(Math.abs(shown - typed) <= 1e-3 * Math.abs(typed), `${name}: ${text} is typed, the field shows ${shown}`);
+}
+
 /** What a user can do, by the name that a failure shows; each gets the page and a source of chance. */
 const DEEDS = {
   async edit(page, { pick, chance }) {
@@ -126,6 +138,29 @@ const DEEDS = {
       }
     }, [tool, role, chance()]);
     return `${tool} ${role}`;
+  },
+  /** A module that `take away` may remove by hand: no undoing, whatever the recording made of the one before. */
+  async put(page, chance) {
+    chance.put = await page.evaluate((where) => {
+      const { bench } = globalThis.holdfast;
+      bench.setTool('add', 0);
+      const free = bench.robot.count > 0 ? bench.robot.freePlaces() : [];
+      const cell = free[Math.floor(where * free.length)];
+      if (cell) {
+        bench.use([cell]);
+      }
+      return cell;
+    }, chance.chance());
+  },
+  async 'take away'(page, chance) {
+    await page.evaluate((cell) => {
+      const { bench } = globalThis.holdfast;
+      bench.setTool('remove', 0);
+      if (cell) {
+        bench.use([cell]);
+      }
+    }, chance.put);
+    chance.put = undefined;
   },
   async obstacle(page, { chance, pick }) {
     await page.evaluate(([hold, where]) => {
@@ -159,7 +194,9 @@ const DEEDS = {
     const text = pick([near, near, near, near, String(-old), '0', '15', '0.4', '-30', '-1', 'abc', '1e300', '']);
     await field.fill(text);
     await field.press('Enter');
-    return text;
+    const name = await field.evaluate((input) => input.ariaLabel ?? input.closest('label').textContent);
+    await expectTaken(field, name, text);
+    return `${name}: ${text}`;
   },
   floor: (page) => page.evaluate(() => document.getElementById('floor').click()),
   async lattice(page, { pick }) {
@@ -214,7 +251,7 @@ const DEEDS = {
 };
 
 /** How often each is done. */
-const WEIGHTS = { edit: 8, type: 8, undo: 4, redo: 2, record: 2, open: 2, simulate: 3, stages: 4, limit: 2, collapse: 2, load: 2, obstacle: 2 };
+const WEIGHTS = { edit: 8, put: 2, 'take away': 2, type: 8, undo: 4, redo: 2, record: 2, open: 2, simulate: 3, stages: 4, limit: 2, collapse: 2, load: 2, obstacle: 2 };
 const CHOSEN = process.env.HOLDFAST_DEEDS?.split(',') ?? Object.keys(DEEDS);
 const NAMES = CHOSEN.flatMap((name) => Array(WEIGHTS[name] ?? 1).fill(name));
 
@@ -294,7 +331,12 @@ function expectConsistent(seen, where) {
   }
 }
 
-test('whatever is done in whatever order, the page says and shows what is so', { timeout: 3_600_000 }, async () => {
+test('whatever is done in whatever order, the page says and shows what is so', { timeout: 3_600_000 }, () => walk(NAMES, ACTIONS));
+
+test('whatever is built and taken back, the recorder counts what is so', { timeout: 3_600_000 }, () =>
+  walk(['record', 'put', 'put', 'take away', 'take away', 'undo', 'redo', 'edit'], ACTIONS));
+
+async function walk(names, actions) {
   // Small, as most of the time goes into pictures.
   const viewport = { width: 840, height: 320 };
   const [page, fresh] = [await openPage(browser, { viewport }), await openPage(browser, { viewport })];
@@ -306,9 +348,9 @@ test('whatever is done in whatever order, the page says and shows what is so', {
   let limitOf;
   let compared = 0;
   let before = await look(page);
-  for (let i = 0; i < ACTIONS; ++i) {
+  for (let i = 0; i < actions; ++i) {
     // What is no robot is mostly taken back: answers are to be compared, not refusals.
-    const name = before.problem && random() < 0.8 ? 'undo' : chance.pick(NAMES);
+    const name = before.problem && random() < 0.8 ? 'undo' : chance.pick(names);
     const said = await DEEDS[name](page, chance);
     trail.push(typeof said === 'string' ? `${name} ${said}` : name);
     const where = `seed ${SEED}, action ${i}: ${trail.slice(-8).join(', ')}`;
@@ -336,7 +378,7 @@ test('whatever is done in whatever order, the page says and shows what is so', {
     before = seen;
   }
   const { good, bad } = expectProgram(asked);
-  console.log(`# ${ACTIONS} actions: ${good} answers and ${bad} refusals of the program, ${compared} pages opened anew`);
-  assert.ok(good > 0.5 * ACTIONS && compared > (0.4 * ACTIONS) / FRESH);
+  console.log(`# ${actions} actions: ${good} answers and ${bad} refusals of the program, ${compared} pages opened anew`);
+  assert.ok(good > 0.5 * actions && compared > (0.4 * actions) / FRESH);
   assert.deepEqual([...page.faults, ...fresh.faults], []);
-});
+}
