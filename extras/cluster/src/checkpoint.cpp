@@ -14,9 +14,9 @@
 #include <type_traits>
 #include <utility>
 
-#include "binary_file.hpp"
 #include "holdfast/base/algebra.hpp"
 #include "holdfast/holdfast.hpp"
+#include "parts/binary_file.hpp"
 
 namespace holdfast::cluster {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "holdfast/base/result.hpp"
 #include "holdfast/solver/contact_journal.hpp"
-#include "petsc_ranks.hpp"
-#include "shared_text.hpp"
+#include "ranks/petsc_ranks.hpp"
+#include "ranks/shared_text.hpp"
 
 namespace holdfast::cluster {
 

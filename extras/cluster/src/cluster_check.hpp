@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "holdfast/io/report.hpp"
-#include "part_maker.hpp"
+#include "parts/part_maker.hpp"
 
 namespace holdfast::cluster {
 

@@ -22,14 +22,14 @@
 
 #include "checkpoint.hpp"
 #include "cluster_check.hpp"
-#include "generator.hpp"
 #include "holdfast/exit_code.hpp"
 #include "holdfast/holdfast.hpp"
-#include "launcher.hpp"
-#include "part_maker.hpp"
+#include "parts/generator.hpp"
+#include "parts/part_maker.hpp"
+#include "parts/structure.hpp"
 #include "picture.hpp"
-#include "shared_text.hpp"
-#include "structure.hpp"
+#include "ranks/launcher.hpp"
+#include "ranks/shared_text.hpp"
 
 namespace holdfast::cluster {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "block_kernels.hpp"
+#include "factorization/block_kernels.hpp"
 #include "holdfast/base/check.hpp"
 
 namespace holdfast::frames {

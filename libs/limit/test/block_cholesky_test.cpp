@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The direct solver of limit loads: solutions beside what they are to solve, the same bits with any
 // number of threads and with either set of kernels, separators that know layers.
-#include "../src/block_cholesky.hpp"
+#include "../src/algebra/block_cholesky.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <cmath>
 #include <random>
 
-#include "../src/dense_kernels.hpp"
-#include "../src/dense_loops.hpp"
-#include "../src/nested_dissection.hpp"
+#include "../src/algebra/dense_kernels.hpp"
+#include "../src/algebra/dense_loops.hpp"
+#include "../src/algebra/nested_dissection.hpp"
 
 namespace holdfast::limit {
 namespace {

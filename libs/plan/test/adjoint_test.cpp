@@ -7,21 +7,21 @@
 // as the modules near it say. And a bound that looks at facets so certifies nothing but
 // what that solver finds pressed all over, and more states than without.
 
-#include "adjoint.hpp"
+#include "bounds/adjoint.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "carried_force.hpp"
-#include "energy_bound.hpp"
+#include "bounds/energy_bound.hpp"
+#include "bounds/robot_growth.hpp"
+#include "equilibria/carried_force.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/mechanics/ground_contact.hpp"
 #include "holdfast/model/families.hpp"
 #include "holdfast/model/material.hpp"
 #include "nearest_first.hpp"
-#include "robot_growth.hpp"
 
 namespace holdfast::plan {
 namespace {

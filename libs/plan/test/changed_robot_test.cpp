@@ -4,7 +4,7 @@
 // A changed robot moves as the same robot does whose equations are made and solved from nothing,
 // whatever states its facets and those of its core are in.
 
-#include "changed_robot.hpp"
+#include "equilibria/changed_robot.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,10 +14,10 @@
 #include <string>
 #include <utility>
 
-#include "core_response.hpp"
+#include "equilibria/core_response.hpp"
+#include "equilibria/influence_core.hpp"
 #include "general_robot.hpp"
 #include "holdfast/base/rng.hpp"
-#include "influence_core.hpp"
 #include "seeds.hpp"
 
 namespace holdfast::plan {

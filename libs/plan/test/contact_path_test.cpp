@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "changed_robot.hpp"
+#include "equilibria/changed_robot.hpp"
 
 namespace holdfast::plan {
 namespace {

@@ -4,19 +4,19 @@
 // A robot that follows its core is where a check of the whole, by the direct solver to all digits,
 // finds it, within the error that it says; and so near that this is worth something.
 
-#include "followed_robot.hpp"
+#include "bounds/followed_robot.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "carried_force.hpp"
+#include "bounds/robot_growth.hpp"
+#include "equilibria/carried_force.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/model/families.hpp"
 #include "holdfast/model/material.hpp"
 #include "nearest_first.hpp"
-#include "robot_growth.hpp"
 
 namespace holdfast::plan {
 namespace {

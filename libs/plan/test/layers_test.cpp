@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "layers.hpp"
+#include "search/layers.hpp"
 
 #include <gtest/gtest.h>
 

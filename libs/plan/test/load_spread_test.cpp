@@ -5,20 +5,20 @@
 // they are what statics says; and a bound that spreads them certifies states each of which
 // the direct solver finds safe within it.
 
-#include "load_spread.hpp"
+#include "bounds/load_spread.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "carried_force.hpp"
-#include "energy_bound.hpp"
+#include "bounds/energy_bound.hpp"
+#include "bounds/robot_growth.hpp"
+#include "equilibria/carried_force.hpp"
 #include "family_spec.hpp"
 #include "holdfast/model/families.hpp"
 #include "holdfast/model/material.hpp"
 #include "nearest_first.hpp"
-#include "robot_growth.hpp"
 #include "seeds.hpp"
 
 namespace holdfast::plan {

@@ -6,18 +6,18 @@
 // also where a foot is about to tilt. Displacements are off by no more than is said, and that is
 // worth something: they are not if the core did not move, or not by all of the resultant.
 
-#include "section_response.hpp"
+#include "bounds/section_response.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "carried_force.hpp"
-#include "energy_bound.hpp"
+#include "bounds/energy_bound.hpp"
+#include "bounds/robot_growth.hpp"
+#include "equilibria/carried_force.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/model/material.hpp"
-#include "robot_growth.hpp"
 #include "seeds.hpp"
 
 namespace holdfast::plan {

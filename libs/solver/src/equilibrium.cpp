@@ -6,9 +6,9 @@
 #include <optional>
 #include <utility>
 
-#include "regularised_contact.hpp"
+#include "contact/regularised_contact.hpp"
+#include "contact/unilateral_contact.hpp"
 #include "system_choice.hpp"
-#include "unilateral_contact.hpp"
 
 namespace holdfast::solver {
 namespace {

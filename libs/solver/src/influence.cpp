@@ -6,8 +6,8 @@
 #include <iterator>
 #include <utility>
 
-#include "block_kernels.hpp"
-#include "direct_system.hpp"
+#include "factorization/block_kernels.hpp"
+#include "factorization/direct_system.hpp"
 
 namespace holdfast::solver {
 Influence::Influence() = default;

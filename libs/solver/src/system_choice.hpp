@@ -4,8 +4,8 @@
 
 #include <memory>
 
-#include "direct_system.hpp"
-#include "multigrid/multigrid.hpp"
+#include "factorization/direct_system.hpp"
+#include "multigrid/cycle/multigrid.hpp"
 
 namespace holdfast::solver {
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How ends of a long beam move what lies between, beside a chain of beams one pitch long each that
 // is solved with a dense matrix.
-#include "../src/multigrid/beam_shapes.hpp"
+#include "../src/multigrid/kernels/beam_shapes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "../src/multigrid/condensation.hpp"
+#include "../src/multigrid/hierarchy/condensation.hpp"
 
 #include <gtest/gtest.h>
 

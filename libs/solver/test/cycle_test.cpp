@@ -3,7 +3,7 @@
 // The preconditioner as a map from forces to displacements: symmetric and positive, as conjugate
 // gradients ask for. Two levels make a linear map, more a nearly linear one (the inner iteration's
 // steps depend on the forces), so symmetry is asked of two and positivity of all.
-#include "../src/multigrid/cycle.hpp"
+#include "../src/multigrid/cycle/cycle.hpp"
 
 #include <gtest/gtest.h>
 

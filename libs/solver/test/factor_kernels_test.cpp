@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The loops that the library chose for this machine beside the same code compiled here, for any
 // machine of its kind: the same bits. On a machine without AVX2 and AVX-512 both are the same code.
-#include "../src/factor_kernels.hpp"
+#include "../src/factorization/factor_kernels.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "../src/factor_loops.hpp"
+#include "../src/factorization/factor_loops.hpp"
 #include "random_numbers.hpp"
 
 namespace holdfast::solver {

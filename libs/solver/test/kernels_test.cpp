@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The loops that the library chose for this machine beside the same code compiled here, for any
 // machine of its kind: the same bits. On a machine without AVX2 both are the same code.
-#include "../src/multigrid/kernels.hpp"
+#include "../src/multigrid/kernels/kernels.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include <limits>
 #include <vector>
 
-#include "../src/multigrid/kernel_loops.hpp"
+#include "../src/multigrid/kernels/kernel_loops.hpp"
 #include "random_numbers.hpp"
 
 namespace holdfast::solver {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The springs of the multigrid's levels beside their definitions: dense products with T(a), the
 // paper's K12, beam theory for a beam of another length.
-#include "../src/multigrid/springs.hpp"
+#include "../src/multigrid/coarsening/springs.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 #include <cstring>
 #include <map>
 
-#include "../src/multigrid/beam_shapes.hpp"
-#include "../src/multigrid/weak_springs.hpp"
+#include "../src/multigrid/coarsening/weak_springs.hpp"
+#include "../src/multigrid/kernels/beam_shapes.hpp"
 #include "random_numbers.hpp"
 
 namespace holdfast::solver {

@@ -10,8 +10,8 @@ namespace holdfast::solver {
 
 /// Whether a facet may have a second state by the regularised law: it is not stuck, and is pulled
 /// sideways by more than what presses it, or than the pull of its gap. The least that had a second
-/// state was 1.7 times that (src/other_solutions.cpp). `rounding`: the share by which the force may
-/// be off.
+/// state was 1.7 times that (src/contact/other_solutions.cpp). `rounding`: the share by which the
+/// force may be off.
 inline bool may_have_second_state(const mechanics::ContactState& state,
                                   const base::Vec6<double>& trial_force, double rounding = 0) {
   return state != mechanics::kStuck &&

@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "json/json_connectors.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "holdfast/io/lattice_names.hpp"
+#include "vocabulary.hpp"
+
+namespace holdfast::io {
+namespace {
+
+constexpr double kUnlimited = model::ConnectorLaw::kUnlimited;
+
+double positive_or_null(JsonReading& reading, const Json& value, const JsonPlace& place) {
+  return value.is_null() ? kUnlimited : read_positive(reading, value, place);
+}
+
+/// {"vertical": number, "lateral": number}; one of them may be absent.
+std::vector<std::optional<double>> by_class(JsonReading& reading, const Json& value,
+                                            const JsonPlace& place) {
+  std::vector<std::optional<double>> values(kClassKeys.size());
+  for (const auto& [key, member] : reading.members(value, place)) {
+    const JsonPlace here = place.at(key);
+    const auto found = std::ranges::find(kClassKeys, key);
+    if (found != kClassKeys.end()) {
+      values[static_cast<std::size_t>(found - kClassKeys.begin())] =
+          positive_or_null(reading, member, here);
+    } else {
+      reading.note_unknown_key(here, kClassKeys);
+    }
+  }
+  if (!values[0] && !values[1]) {
+    reading.fail(place, "expected are \"vertical\", \"lateral\" or both");
+  }
+  return values;
+}
+
+ConnectorParameter parameter(JsonReading& reading, const std::string& key, const Json& value,
+                             const JsonPlace& place) {
+  if (value.is_object()) {
+    return {key, Spread::kClasses, by_class(reading, value, place)};
+  }
+  if (!value.is_array()) {
+    if (!value.is_null() && !value.is_number()) {
+      reading.refuse(value, place,
+                     "a number, null, {\"vertical\": number, \"lateral\": number} or a list");
+    }
+    return {key, Spread::kAll, {positive_or_null(reading, value, place)}};
+  }
+  ConnectorParameter list{key, Spread::kPairs, {}};
+  const Json::array_t& array = reading.elements(value, place);
+  for (std::size_t i = 0; i < array.size() && !reading.has_failed(); ++i) {
+    list.values.emplace_back(positive_or_null(reading, array[i], place.at(i)));
+  }
+  return list;
+}
+
+/// Reads one of kConnectorKeys.
+void read_connector_parameter(JsonReading& reading, const std::string& key, const Json& value,
+                              const JsonPlace& place, Connectors& connectors) {
+  if (key == kBendingKey) {
+    connectors.bending =
+        static_cast<model::BendingLaw>(read_choice(reading, value, place, kBendingNames));
+  } else {
+    connectors.parameters.push_back(parameter(reading, key, value, place));
+  }
+}
+
+void check_pair_lists_of(JsonReading& reading, const Connectors& connectors,
+                         const JsonPlace& place) {
+  const base::Lattice& lattice = reading.document.extension.lattice;
+  const auto pair_count = static_cast<std::size_t>(lattice.direction_count / 2);
+  for (const ConnectorParameter& parameter : connectors.parameters) {
+    if (parameter.spread == Spread::kPairs && parameter.values.size() != pair_count) {
+      reading.fail(place.at(parameter.key),
+                   fmt::format("found a list of {}, expected is a number for each of the {} pairs "
+                               "of directions of the lattice \"{}\"",
+                               parameter.values.size(), pair_count, lattice_name(lattice)));
+    }
+  }
+}
+
+}  // namespace
+
+double read_not_negative(JsonReading& reading, const Json& value, const JsonPlace& place) {
+  const double number = reading.number(value, place);
+  if (!(number >= 0)) {
+    reading.refuse(value, place, "a number that is not negative");
+  }
+  return number;
+}
+
+double read_positive(JsonReading& reading, const Json& value, const JsonPlace& place) {
+  const double number = reading.number(value, place);
+  if (!(number > 0)) {
+    reading.refuse(value, place, "a positive number");
+  }
+  return number;
+}
+
+std::size_t read_choice(JsonReading& reading, const Json& value, const JsonPlace& place,
+                        Names names) {
+  const std::string name = reading.string(value, place);
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end()) {
+    reading.refuse(value, place, fmt::format("one of \"{}\"", fmt::join(names, "\", \"")));
+    return 0;
+  }
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+bool is_material_extension(std::string_view key) {
+  return key == kFootKey || std::ranges::find(kConnectorKeys, key) != kConnectorKeys.end();
+}
+
+void read_material_extension(JsonReading& reading, const std::string& key, const Json& value,
+                             const JsonPlace& place) {
+  Extension& extension = reading.document.extension;
+  if (key == kFootKey) {
+    extension.foot_mm = read_not_negative(reading, value, place);
+  } else {
+    read_connector_parameter(reading, key, value, place, extension.connectors);
+  }
+}
+
+KindEntry read_kind(JsonReading& reading, const std::string& name, const Json& value,
+                    const JsonPlace& place) {
+  KindEntry kind{name, {}, {}};
+  for (const auto& [key, member] : reading.members(value, place)) {
+    const JsonPlace here = place.at(key);
+    if (key == "mass_kg") {
+      kind.mass_kg = read_positive(reading, member, here);
+    } else if (std::ranges::find(kClassStrengthKeys, key) != kClassStrengthKeys.end()) {
+      kind.connectors.parameters.push_back(
+          {key, Spread::kAll, {read_positive(reading, member, here)}});
+    } else if (std::ranges::find(kConnectorKeys, key) != kConnectorKeys.end()) {
+      read_connector_parameter(reading, key, member, here, kind.connectors);
+    } else {
+      reading.note_unknown_key(here, kKindKeys);
+    }
+  }
+  expect_one_strength(reading, value, place);
+  return kind;
+}
+
+void expect_one_strength(JsonReading& reading, const Json& value, const JsonPlace& place) {
+  const auto has = [&](std::string_view key) { return value.is_object() && value.contains(key); };
+  if (has("strength_n") && std::ranges::any_of(kClassStrengthKeys, has)) {
+    reading.fail(place.at("strength_n"),
+                 "the strength stands here and in \"strength_vertical_n\" or "
+                 "\"strength_lateral_n\", allowed is one of the two ways");
+  }
+}
+
+void check_pair_lists(JsonReading& reading) {
+  const Extension& extension = reading.document.extension;
+  const JsonPlace top;
+  check_pair_lists_of(reading, extension.connectors, top.at("material"));
+  const JsonPlace kinds = top.at("kinds");
+  for (const KindEntry& kind : extension.kinds) {
+    check_pair_lists_of(reading, kind.connectors, kinds.at(kind.name));
+  }
+}
+
+}  // namespace holdfast::io

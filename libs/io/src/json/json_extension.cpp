@@ -1,0 +1,348 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "json/json_extension.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include "holdfast/host/text.hpp"
+#include "json/json_connectors.hpp"
+#include "text_input.hpp"
+#include "vocabulary.hpp"
+
+namespace holdfast::io {
+namespace {
+
+using base::Cell;
+
+std::array<double, 3> vector(JsonReading& reading, const Json& value, const JsonPlace& place) {
+  const Json::array_t& array = reading.elements(value, place);
+  std::array<double, 3> numbers{};
+  if (array.size() != numbers.size()) {
+    reading.fail(place,
+                 fmt::format("found an array of {}, expected are three numbers", array.size()));
+    return numbers;
+  }
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    numbers[i] = reading.number(array[i], place.at(i));
+  }
+  return numbers;
+}
+
+/// Calls take(element, its place) for every element of an array that takes up cells.
+template <class Take>
+void for_each_element(JsonReading& reading, const Json& value, const JsonPlace& place,
+                      const Take& take) {
+  const Json::array_t& array = reading.elements(value, place);
+  if (reading.take_room(array.size(), [&] { return place.pointer(); })) {
+    for (std::size_t i = 0; i < array.size() && !reading.has_failed(); ++i) {
+      take(array[i], place.at(i));
+    }
+  }
+}
+
+/// What read(reading, element, its place) makes of every element of an array.
+template <class Read>
+auto list_of(JsonReading& reading, const Json& value, const JsonPlace& place, const Read& read) {
+  std::vector<decltype(read(reading, value, place))> list;
+  for_each_element(reading, value, place, [&](const Json& element, const JsonPlace& here) {
+    list.push_back(read(reading, element, here));
+  });
+  return list;
+}
+
+Cell cell(JsonReading& reading, const Json& value, const JsonPlace& place) {
+  return reading.cell(value, place);
+}
+
+std::vector<Cell> cells(JsonReading& reading, const Json& value, const JsonPlace& place) {
+  return list_of(reading, value, place, cell);
+}
+
+std::vector<model::CellPair> pairs(JsonReading& reading, const Json& value,
+                                   const JsonPlace& place) {
+  std::vector<model::CellPair> list;
+  for_each_element(reading, value, place, [&](const Json& element, const JsonPlace& here) {
+    const std::vector<Cell> ends = cells(reading, element, here);
+    if (ends.size() == 2) {
+      list.push_back({ends[0], ends[1]});
+    } else {
+      reading.fail(here, fmt::format("found {}, expected are the two of a connection",
+                                     host::counted(ends.size(), "cell")));
+    }
+  });
+  return list;
+}
+
+/// A failure if an object lacks a key that it must have.
+void demand(JsonReading& reading, const Json& value, const JsonPlace& place, std::string_view key) {
+  if (value.is_object() && !value.contains(key)) {
+    reading.fail_missing(place, key);
+  }
+}
+
+void read_floor(JsonReading& reading, const Json& value, const JsonPlace& place) {
+  for (const auto& [key, member] : reading.members(value, place)) {
+    const JsonPlace here = place.at(key);
+    if (key == "friction") {
+      reading.document.extension.floor_friction = read_not_negative(reading, member, here);
+    } else {
+      reading.note_unknown_key(here, kFloorKeys);
+    }
+  }
+}
+
+/// Straight down it is what the material says, which version 1 can say too.
+void read_gravity(JsonReading& reading, const Json& value, const JsonPlace& place) {
+  const std::array<double, 3> gravity = vector(reading, value, place);
+  Document& document = reading.document;
+  if (!reading.has_failed() && gravity == std::array<double, 3>{}) {
+    reading.fail(
+        place,
+        "gravity is zero, allowed is a vector: without weight a robot rests on nothing, and "
+        "there is nothing to hold; where loads are meant to act alone, give a tiny one, "
+        "such as [0, 0, -1e-9]");
+  }
+  if (gravity[0] == 0 && gravity[1] == 0 && gravity[2] < 0) {
+    document.material.gravity_m_s2 = -gravity[2];
+    const auto* const parameter =
+        std::ranges::find(model::kMaterialParameters, std::string_view("gravity_m_s2"),
+                          &model::MaterialParameter::key);
+    if (const auto fault = model::find_fault(*parameter, -gravity[2])) {
+      reading.fail(place, "the size of " + *fault);
+    }
+  } else {
+    document.extension.gravity_m_s2 = gravity;
+  }
+}
+
+void read_kinds(JsonReading& reading, const Json& value, const JsonPlace& place) {
+  for (const auto& [name, member] : reading.members(value, place)) {
+    const JsonPlace here = place.at(name);
+    if (const auto fault = find_string_fault(name); fault || name.empty()) {
+      reading.fail(here, "the name of a kind is empty or no printable text");
+    }
+    reading.document.extension.kinds.push_back(read_kind(reading, name, member, here));
+  }
+}
+
+struct ColoredObstacle {
+  model::Obstacle obstacle;
+  std::optional<Color> color;
+};
+
+ColoredObstacle obstacle(JsonReading& reading, const Json& value, const JsonPlace& place) {
+  ColoredObstacle colored;
+  model::Obstacle& found = colored.obstacle;
+  bool is_list = false;
+  for (const auto& [key, member] : reading.members(value, place)) {
+    const JsonPlace here = place.at(key);
+    if (key == "from") {
+      found.from = reading.cell(member, here);
+    } else if (key == "to") {
+      found.to = reading.cell(member, here);
+    } else if (key == "cells") {
+      found.cells = cells(reading, member, here);
+      is_list = true;
+    } else if (key == "hold") {
+      found.touch.hold = static_cast<model::Hold>(read_choice(reading, member, here, kHoldNames));
+    } else if (key == "friction") {
+      found.touch.friction = read_not_negative(reading, member, here);
+    } else if (key == "color") {
+      colored.color = reading.color(member, here);
+    } else {
+      reading.note_unknown_key(here, kObstacleKeys);
+    }
+  }
+  const bool is_box = value.is_object() && value.contains("from") && value.contains("to");
+  const bool has_corner = value.is_object() && (value.contains("from") || value.contains("to"));
+  if (is_list ? has_corner || found.cells.empty() : !is_box) {
+    reading.fail(place, "expected are either \"from\" and \"to\", or \"cells\" with at least one");
+  }
+  if (found.to.x < found.from.x || found.to.y < found.from.y || found.to.z < found.from.z) {
+    reading.fail(place, "no coordinate of \"to\" may be below that of \"from\"");
+  }
+  return colored;
+}
+
+void read_obstacles(JsonReading& reading, const Json& value, const JsonPlace& place) {
+  Extension& extension = reading.document.extension;
+  bool is_colored = false;
+  for (ColoredObstacle& found : list_of(reading, value, place, obstacle)) {
+    extension.obstacles.push_back(std::move(found.obstacle));
+    extension.obstacle_colors.push_back(found.color);
+    is_colored = is_colored || found.color;
+  }
+  if (!is_colored) {
+    extension.obstacle_colors.clear();
+  }
+}
+
+model::Payload payload(JsonReading& reading, const Json& value, const JsonPlace& place) {
+  model::Payload found;
+  demand(reading, value, place, "cell");
+  for (const auto& [key, member] : reading.members(value, place)) {
+    const JsonPlace here = place.at(key);
+    if (key == "cell") {
+      found.cell = reading.cell(member, here);
+    } else if (key == "force_n") {
+      found.force_n = vector(reading, member, here);
+    } else if (key == "torque_nmm") {
+      found.torque_nmm = vector(reading, member, here);
+    } else {
+      reading.note_unknown_key(here, kLoadKeys);
+    }
+  }
+  return found;
+}
+
+void read_loads(JsonReading& reading, const Json& value, const JsonPlace& place) {
+  reading.document.extension.payloads = list_of(reading, value, place, payload);
+}
+
+model::Move move(JsonReading& reading, const Json& value, const JsonPlace& place) {
+  model::Move found;
+  demand(reading, value, place, "from");
+  demand(reading, value, place, "to");
+  for (const auto& [key, member] : reading.members(value, place)) {
+    const JsonPlace here = place.at(key);
+    if (key == "from") {
+      found.from = reading.cell(member, here);
+    } else if (key == "to") {
+      found.to = reading.cell(member, here);
+    } else if (key == "carrier") {
+      found.carrier = reading.cell(member, here);
+    } else {
+      reading.note_unknown_key(here, kMoveKeys);
+    }
+  }
+  return found;
+}
+
+model::Step plan_step(JsonReading& reading, const Json& value, const JsonPlace& place) {
+  model::Step step;
+  for (const auto& [key, member] : reading.members(value, place)) {
+    const JsonPlace here = place.at(key);
+    if (key == "attach") {
+      step.attach = cells(reading, member, here);
+    } else if (key == "detach") {
+      step.detach = cells(reading, member, here);
+    } else if (key == "move") {
+      step.moves = list_of(reading, member, here, move);
+    } else if (key == "release") {
+      step.release = pairs(reading, member, here);
+    } else if (key == "connect") {
+      step.connect = pairs(reading, member, here);
+    } else {
+      reading.note_unknown_key(here, kStepKeys);
+    }
+  }
+  return step;
+}
+
+void read_steps(JsonReading& reading, const Json& value, const JsonPlace& place) {
+  reading.document.extension.plan = list_of(reading, value, place, plan_step);
+}
+
+/// For what is read before all else.
+void pass_over(JsonReading& /*reading*/, const Json& /*value*/, const JsonPlace& /*place*/) {}
+
+/// The JSON pointer to a module that has parameters of its own.
+std::string own_place(const OwnParameters& own) {
+  const std::string list = own.step == 0   ? "/modules"
+                           : own.step == 1 ? "/planned"
+                                           : fmt::format("/later_steps/{}", own.step - 2);
+  return fmt::format("{}/{}", list, own.module);
+}
+
+/// The readers of kExtensionKeys, in their order.
+constexpr void (*kReaders[])(JsonReading&, const Json&, const JsonPlace&) = {
+    pass_over,  pass_over,      read_floor, read_gravity,
+    read_kinds, read_obstacles, read_loads, read_steps};
+static_assert(std::size(kReaders) == kExtensionKeys.size());
+
+}  // namespace
+
+void read_extension_member(JsonReading& reading, std::string_view key, const Json& value,
+                           const JsonPlace& place) {
+  const auto found = std::ranges::find(kExtensionKeys, key);
+  kReaders[found - kExtensionKeys.begin()](reading, value, place);
+}
+
+void read_own_parameter(JsonReading& reading, std::string_view key, const Json& value,
+                        const JsonPlace& place, OwnParameters& own) {
+  if (key == "kind") {
+    own.kind = reading.string(value, place);
+    if (own.kind.empty()) {
+      reading.refuse(value, place, "the name of a kind");
+    }
+  } else {
+    own.mass_kg = read_positive(reading, value, place);
+  }
+}
+
+void read_extension_text(Reading& reading, std::string_view text, const Reading::Where& where) {
+  JsonReading json;
+  json.allows_unknown = reading.allows_unknown;
+  json.document.material = reading.document.material;
+  json.document.extension = std::move(reading.document.extension);
+  const auto root = parse_json(text);
+  if (!root) {
+    reading.fail({root.error().code, root.error().message, where()});
+    return;
+  }
+  const JsonPlace top;
+  for (const auto& [key, value] : json.members(root.value(), top)) {
+    const JsonPlace here = top.at(key);
+    if (key == "support_z" && value.is_null()) {
+      json.document.extension.has_floor = false;
+    } else if (key == "material") {
+      for (const auto& [name, member] : json.members(value, here)) {
+        if (is_material_extension(name)) {
+          read_material_extension(json, name, member, here.at(name));
+        } else {
+          json.note_unknown_key(here.at(name), kConnectorKeys);
+        }
+      }
+      expect_one_strength(json, value, here);
+    } else if (std::ranges::find(kExtensionKeys, key) != kExtensionKeys.end()) {
+      read_extension_member(json, key, value, here);
+    } else {
+      json.note_unknown_key(here, kExtensionKeys);
+    }
+  }
+  check_kinds(json);
+  check_pair_lists(json);
+  auto read = std::move(json).finish();
+  if (read) {
+    ReadDocument found = std::move(read).value();
+    reading.document.material = found.document.material;
+    reading.document.extension = std::move(found.document.extension);
+    for (std::string& warning : found.warnings) {
+      reading.warn(std::move(warning), where);
+    }
+  } else {
+    reading.fail({read.error().code,
+                  fmt::format("{}: {}", read.error().where, read.error().message), where()});
+  }
+}
+
+void check_kinds(JsonReading& reading) {
+  Extension& extension = reading.document.extension;
+  std::ranges::sort(extension.own, {},
+                    [](const OwnParameters& own) { return std::pair(own.step, own.module); });
+  for (const OwnParameters& own : extension.own) {
+    if (!own.kind.empty() &&
+        std::ranges::find(extension.kinds, own.kind, &KindEntry::name) == extension.kinds.end()) {
+      reading.fail({base::ErrorCode::kBadInput,
+                    fmt::format("the kind {} is none of those in \"kinds\"", excerpt(own.kind)),
+                    own_place(own) + "/kind"});
+    }
+  }
+}
+
+}  // namespace holdfast::io

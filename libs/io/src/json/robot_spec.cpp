@@ -1,0 +1,382 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <set>
+
+#include "holdfast/io/document.hpp"
+#include "holdfast/io/lattice_names.hpp"
+#include "holdfast/model/robot_catalogue.hpp"
+#include "json/json_values.hpp"
+#include "robot_defaults.hpp"
+#include "text_input.hpp"
+#include "vocabulary.hpp"
+
+/// From what a file says to what a robot is made from.
+namespace holdfast::io {
+namespace {
+
+using model::ConnectorLaw;
+
+/// Where a parameter goes; friction, which may be none, aside.
+struct LawMember {
+  std::string_view key;
+  double ConnectorLaw::*value;
+  std::optional<base::ConnectorClass> only = {};
+};
+
+constexpr LawMember kLawMembers[] = {
+    {kClassStrengthKeys[0], &ConnectorLaw::strength_n, base::ConnectorClass::kVertical},
+    {kClassStrengthKeys[1], &ConnectorLaw::strength_n, base::ConnectorClass::kLateral},
+    {"strength_n", &ConnectorLaw::strength_n},
+    {"lever_mm", &ConnectorLaw::lever_mm},
+    {"shear_strength_n", &ConnectorLaw::shear_strength_n},
+    {"torsion_strength_nmm", &ConnectorLaw::torsion_strength_nmm},
+    {"torsion_radius_mm", &ConnectorLaw::torsion_radius_mm},
+    {"gap_limit_mm", &ConnectorLaw::gap_limit_mm}};
+
+void set(ConnectorLaw& law, std::string_view key, double value, base::ConnectorClass direction) {
+  if (key == "friction") {
+    law.friction = std::isinf(value) ? std::nullopt : std::optional(value);
+    return;
+  }
+  const auto* const member = std::ranges::find(kLawMembers, key, &LawMember::key);
+  if (member != std::end(kLawMembers) && member->only.value_or(direction) == direction) {
+    law.*member->value = value;
+  }
+}
+
+/// What a parameter says for a direction; none if nothing.
+std::optional<double> value_for(const ConnectorParameter& parameter, std::size_t direction,
+                                base::ConnectorClass direction_class) {
+  const std::size_t index = parameter.spread == Spread::kAll ? 0
+                            : parameter.spread == Spread::kClasses
+                                ? static_cast<std::size_t>(direction_class)
+                                : direction / 2;
+  return index < parameter.values.size() ? parameter.values[index] : std::nullopt;
+}
+
+void apply(const Connectors& connectors, const base::Lattice& lattice, model::ModuleKind& kind) {
+  for (std::size_t d = 0; d < kind.connectors.size(); ++d) {
+    ConnectorLaw& law = kind.connectors[d];
+    const base::ConnectorClass direction_class = lattice.connector_class[d];
+    for (const ConnectorParameter& parameter : connectors.parameters) {
+      if (const auto value = value_for(parameter, d, direction_class)) {
+        set(law, parameter.key, *value, direction_class);
+      }
+    }
+    law.bending = connectors.bending.value_or(law.bending);
+  }
+}
+
+// What model::Robot allows; beyond it, products with other numbers leave the range of double.
+constexpr double kNumberMin = 1e-12;
+constexpr double kNumberMax = 1e12;
+
+std::optional<base::Error> find_fault(const Connectors& connectors, const JsonPlace& place) {
+  for (const ConnectorParameter& parameter : connectors.parameters) {
+    for (const std::optional<double>& value : parameter.values) {
+      if (!(value.value_or(1) >= kNumberMin)) {
+        return base::Error{base::ErrorCode::kBadInput,
+                           fmt::format("found {}, allowed is {} and more", *value, kNumberMin),
+                           place.at(parameter.key).pointer()};
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+/// What a beam as wide as the pitch has, which a file that names a robot need not say.
+model::Material section_of_pitch(double pitch_mm) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  model::Material section;
+  section.pitch_mm = pitch_mm;
+  section.facet_mm = section.section_area_mm2 = section.torsion_mm4 = kNone;
+  section.moment_x_mm4 = section.moment_y_mm4 = kNone;
+  model::fill_section(section);
+  return section;
+}
+
+std::optional<base::Error> find_fault(const model::Material& material, const JsonPlace& place) {
+  const model::Material of_pitch = section_of_pitch(material.pitch_mm);
+  for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
+    const double value = material.*parameter.value;
+    if (auto fault = model::find_fault(parameter, value)) {
+      const bool is_of_pitch = value == of_pitch.*parameter.value;
+      return base::Error{base::ErrorCode::kBadInput, *std::move(fault),
+                         place.at(is_of_pitch ? "pitch_mm" : parameter.key).pointer()};
+    }
+  }
+  return std::nullopt;
+}
+
+/// Before the robot is made, which does not know the file's names and places.
+std::optional<base::Error> find_fault(const Document& document) {
+  const Extension& extension = document.extension;
+  const JsonPlace top;
+  const JsonPlace material = top.at("material");
+  auto fault = find_fault(document.material, material);
+  fault = fault ? fault : find_fault(extension.connectors, material);
+  const JsonPlace kinds = top.at("kinds");
+  for (const KindEntry& kind : extension.kinds) {
+    const JsonPlace place = kinds.at(kind.name);
+    const double mass = kind.mass_kg.value_or(1);
+    if (!fault && !(mass >= kNumberMin && mass <= kNumberMax)) {
+      fault = {base::ErrorCode::kBadInput,
+               fmt::format("found {}, allowed is {} to {}", mass, kNumberMin, kNumberMax),
+               place.at("mass_kg").pointer()};
+    }
+    fault = fault ? fault : find_fault(kind.connectors, place);
+  }
+  return fault;
+}
+
+/// All modules without a kind of their own first, then the document's kinds in their order.
+std::vector<model::ModuleKind> kinds_of(const Document& document) {
+  const Extension& extension = document.extension;
+  model::ModuleKind plain = model::default_kind(document.material, extension.lattice);
+  apply(robot_connectors(extension.robot), extension.lattice, plain);
+  apply(extension.connectors, extension.lattice, plain);
+  std::vector<model::ModuleKind> kinds = {plain};
+  for (const KindEntry& entry : extension.kinds) {
+    model::ModuleKind& kind = kinds.emplace_back(plain);
+    kind.name = entry.name;
+    kind.mass_kg = entry.mass_kg.value_or(plain.mass_kg);
+    apply(entry.connectors, extension.lattice, kind);
+  }
+  return kinds;
+}
+
+/// What modules have of their own, for those of one step of the document, or of step 0, which
+/// exist.
+struct OwnLists {
+  std::vector<model::OwnKind>& kinds;
+  std::vector<model::OwnMass>& masses;
+};
+
+/// The cell of a module with parameters of its own; none if the document has no such module.
+const base::Cell* find_cell(const Document& document, const OwnParameters& own) {
+  if (own.step == 0) {
+    return own.module < document.modules.size() ? &document.modules[own.module].cell : nullptr;
+  }
+  if (own.step > document.steps.size()) {
+    return nullptr;
+  }
+  const Step& step = document.steps[own.step - 1];
+  return own.module < step.size() ? &step[own.module].cell : nullptr;
+}
+
+/// Gives modules their own kinds and masses; `lists(step)` are those of a step, or none. A mass
+/// that is that of the kind says nothing.
+template <class Lists>
+std::optional<base::Error> add_own(const Document& document,
+                                   const std::vector<model::ModuleKind>& kinds,
+                                   const Lists& lists) {
+  for (const OwnParameters& own : document.extension.own) {
+    const base::Cell* const cell = find_cell(document, own);
+    const std::optional<OwnLists> list = cell == nullptr ? std::nullopt : lists(own.step);
+    if (!list) {
+      continue;
+    }
+    const auto kind = std::ranges::find(kinds, own.kind, &model::ModuleKind::name);
+    if (kind == kinds.end()) {
+      return base::Error{base::ErrorCode::kBadInput,
+                         fmt::format("the kind {} of {} is none of those in \"kinds\"",
+                                     excerpt(own.kind), model::text(*cell)),
+                         "/kinds"};
+    }
+    if (kind != kinds.begin()) {
+      list->kinds.push_back({*cell, static_cast<std::uint16_t>(kind - kinds.begin())});
+    }
+    if (own.mass_kg && *own.mass_kg != kind->mass_kg) {
+      list->masses.push_back({*cell, *own.mass_kg});
+    }
+  }
+  return std::nullopt;
+}
+
+/// Existing modules and all around them, without what single modules have of their own.
+model::RobotSpec start_of(const Document& document) {
+  const Extension& extension = document.extension;
+  model::RobotSpec spec{.material = document.material,
+                        .lattice = extension.lattice,
+                        .floor = {.friction = extension.floor_friction},
+                        .obstacles = extension.obstacles,
+                        .gravity_m_s2 = extension.gravity_m_s2,
+                        .foot_mm = extension.foot_mm};
+  spec.support_z = extension.has_floor ? std::optional(document.support_z) : std::nullopt;
+  spec.existing.reserve(document.modules.size());
+  for (const ModuleEntry& module : document.modules) {
+    spec.existing.push_back(module.cell);
+    if (module.is_fixed) {
+      spec.fixed.push_back(module.cell);
+    }
+  }
+  return spec;
+}
+
+/// Whether default_kind() is not all that there is.
+bool has_kinds(const Document& document) {
+  return document.extension.connectors != Connectors{} ||
+         robot_connectors(document.extension.robot) != Connectors{};
+}
+
+std::vector<model::Step> steps_of(const Document& document) {
+  std::vector<model::Step> steps;
+  for (std::size_t i = first_step(document); i < document.steps.size(); ++i) {
+    model::Step& step = steps.emplace_back();
+    for (const PlannedEntry& entry : document.steps[i]) {
+      step.attach.push_back(entry.cell);
+    }
+  }
+  const std::vector<model::Step>& plan = document.extension.plan;
+  steps.insert(steps.end(), plan.begin(), plan.end());
+  return steps;
+}
+
+/// Puts loads on existing modules, and those on others into the steps that attach them.
+void add_payloads(const Document& document, Sequence& sequence) {
+  if (document.extension.payloads.empty()) {
+    return;
+  }
+  const std::set<base::Cell> existing(sequence.start.existing.begin(),
+                                      sequence.start.existing.end());
+  for (const model::Payload& payload : document.extension.payloads) {
+    const auto attaching =
+        existing.contains(payload.cell)
+            ? sequence.steps.end()
+            : std::ranges::find_if(sequence.steps, [&](const model::Step& step) {
+                return std::ranges::find(step.attach, payload.cell) != step.attach.end();
+              });
+    (attaching == sequence.steps.end() ? sequence.start.payloads : attaching->payloads)
+        .push_back(payload);
+  }
+}
+
+/// All loads but those on modules that later steps attach.
+std::vector<model::Payload> present_payloads(const Document& document) {
+  if (document.steps.size() <= 1 && document.extension.plan.empty()) {
+    return document.extension.payloads;
+  }
+  Sequence sequence{.start = start_of(document), .steps = steps_of(document)};
+  add_payloads(document, sequence);
+  std::vector<model::Payload> present = std::move(sequence.start.payloads);
+  if (!document.steps.empty() && first_step(document) == 0) {
+    const std::vector<model::Payload>& planned = sequence.steps.front().payloads;
+    present.insert(present.end(), planned.begin(), planned.end());
+  }
+  return present;
+}
+
+bool is_connected(const Document& document, const base::Lattice& lattice) {
+  model::RobotSpec alone{.support_z = std::nullopt, .lattice = lattice};
+  std::ranges::transform(document.modules, std::back_inserter(alone.existing), &ModuleEntry::cell);
+  if (!document.steps.empty()) {
+    std::ranges::transform(document.steps.front(), std::back_inserter(alone.existing),
+                           &PlannedEntry::cell);
+  }
+  alone.fixed = {alone.existing.front()};
+  return model::Robot::create(alone).has_value();
+}
+
+}  // namespace
+
+base::Error with_other_lattice(base::Error error, const Document& document) {
+  if (document.modules.empty() || is_connected(document, document.extension.lattice)) {
+    return error;
+  }
+  const auto other = std::ranges::find_if(kNamedLattices, [&](const NamedLattice& row) {
+    return row.lattice != document.extension.lattice && is_connected(document, row.lattice);
+  });
+  if (other != kNamedLattices.end()) {
+    error.message += fmt::format("; the lattice is {}, in {} it is connected",
+                                 lattice_name(document.extension.lattice), other->name);
+  }
+  return error;
+}
+
+base::Result<model::RobotSpec> make_spec(const Document& document) {
+  if (auto error = find_fault(document)) {
+    return *std::move(error);
+  }
+  model::RobotSpec spec = start_of(document);
+  spec.payloads = present_payloads(document);
+  if (!document.steps.empty()) {
+    for (const PlannedEntry& planned : document.steps.front()) {
+      spec.planned.push_back(planned.cell);
+    }
+  }
+  std::vector<model::ModuleKind> kinds = kinds_of(document);
+  const auto lists = [&](std::size_t step) {
+    return step <= 1 ? std::optional(OwnLists{spec.own_kinds, spec.own_masses}) : std::nullopt;
+  };
+  if (auto error = add_own(document, kinds, lists)) {
+    return *std::move(error);
+  }
+  if (!spec.own_kinds.empty() || has_kinds(document)) {
+    spec.kinds = std::move(kinds);
+  }
+  return spec;
+}
+
+std::size_t first_step(const Document& document) {
+  return !document.steps.empty() && document.steps.front().empty() ? 1 : 0;
+}
+
+std::size_t step_count(const Document& document) {
+  return document.steps.size() - first_step(document) + document.extension.plan.size();
+}
+
+std::string step_pointer(const Document& document, std::size_t step) {
+  const std::size_t index = step + first_step(document);
+  if (index >= document.steps.size()) {
+    return fmt::format("/steps/{}", index - document.steps.size());
+  }
+  return index == 0 ? "/planned" : fmt::format("/later_steps/{}", index - 1);
+}
+
+base::Result<Sequence> make_sequence(const Document& document) {
+  if (auto error = find_fault(document)) {
+    return *std::move(error);
+  }
+  Sequence sequence{.start = start_of(document), .steps = steps_of(document)};
+  add_payloads(document, sequence);
+  std::vector<model::ModuleKind> kinds = kinds_of(document);
+  const auto lists = [&, first = first_step(document)](std::size_t step) {
+    model::RobotSpec& start = sequence.start;
+    if (step == 0) {
+      return std::optional(OwnLists{start.own_kinds, start.own_masses});
+    }
+    model::Step& attaching = sequence.steps[step - 1 - first];
+    return std::optional(OwnLists{attaching.own_kinds, attaching.own_masses});
+  };
+  if (auto error = add_own(document, kinds, lists)) {
+    return *std::move(error);
+  }
+  const bool is_any_special = !sequence.start.own_kinds.empty() ||
+                              std::ranges::any_of(sequence.steps, [](const model::Step& step) {
+                                return !step.own_kinds.empty();
+                              });
+  if (is_any_special || has_kinds(document)) {
+    sequence.start.kinds = std::move(kinds);
+  }
+  return sequence;
+}
+
+base::Result<model::Robot> make_robot(const Document& document, int thread_count) {
+  const auto spec = make_spec(document);
+  if (!spec) {
+    return spec.error();
+  }
+  auto robot = model::Robot::create(spec.value(), thread_count);
+  if (!robot) {
+    return with_other_lattice(robot.error(), document);
+  }
+  return robot;
+}
+
+}  // namespace holdfast::io

@@ -1,0 +1,221 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/io/order_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <vector>
+
+#include "holdfast/host/text.hpp"
+#include "holdfast/io/beside_one.hpp"
+#include "holdfast/io/order_certificate.hpp"
+#include "json/json_text.hpp"
+
+namespace holdfast::io {
+namespace {
+
+using plan::OrderOutcome;
+
+std::vector<base::Cell> cells_of(const OrderReport& report,
+                                 const std::vector<plan::Element>& elements) {
+  std::vector<base::Cell> cells;
+  for (const plan::Element element : elements) {
+    cells.push_back(report.task.target.existing[static_cast<std::size_t>(element)]);
+  }
+  return cells;
+}
+
+/// Every state on the way, in its order, with what led to it.
+Items way_items(const OrderReport& report) {
+  const plan::Order& order = report.result.order;
+  const std::size_t count = order.steps.size();
+  Items items;
+  for (std::size_t i = 0; i < order.judgements.size(); ++i) {
+    const std::size_t k = report.is_reversed ? count - i : i;
+    const std::size_t step = report.is_reversed ? k : k - 1;
+    const std::vector<plan::Element> none;
+    const auto& group = i == 0 ? none : order.steps[step];
+    items.push_back(object(
+        {member(report.is_reversed ? "detach" : "attach", json_text(cells_of(report, group))),
+         member(order.judgements[k].is_bound ? "load_ratio_bound" : "load_ratio_max",
+                json_text(order.judgements[k].load_ratio_max)),
+         member("margin_mm", json_text(order.judgements[k].margin_mm))}));
+  }
+  return items;
+}
+
+std::string help_text(const OrderReport& report) {
+  if (!report.help) {
+    return "null";
+  }
+  return object({member("supports", json_text(report.help->supports)),
+                 member("temporary", json_text(report.help->temporary))});
+}
+
+std::string words(const std::vector<base::Cell>& cells) {
+  std::vector<std::string> names;
+  std::ranges::transform(cells, std::back_inserter(names), &model::text);
+  return fmt::format("{}", fmt::join(names, " "));
+}
+
+std::string help_words(const OrderReport& report) {
+  if (!report.is_help_sought) {
+    return "";
+  }
+  if (!report.help) {
+    return "  help        no single support and no few temporary modules found that would do\n";
+  }
+  const bool is_support = !report.help->supports.empty();
+  return fmt::format("  help        {}: {}\n",
+                     is_support ? "with a support in this cell there is an order"
+                                : "with these modules, attached on the way and detached at the "
+                                  "end, there is an order",
+                     words(is_support ? report.help->supports : report.help->temporary));
+}
+
+/// How far the search got.
+std::string furthest_words(const OrderReport& report) {
+  const plan::Order& order = report.result.order;
+  if (order.steps.empty()) {
+    return "";
+  }
+  std::size_t count = report.is_reversed ? report.task.target.existing.size() : order.start.size();
+  for (const plan::Batch& group : order.steps) {
+    count = report.is_reversed ? count - group.size() : count + group.size();
+  }
+  return fmt::format("  as far as   {} of {}, by {}, every state {} is safe\n", count,
+                     host::counted(report.task.target.existing.size(), "module"),
+                     host::counted(order.steps.size(), "step"),
+                     report.is_reversed ? "left behind" : "on the way");
+}
+
+std::string none_words(const OrderReport& report) {
+  const plan::Closure& closure = report.result.certificate->closure;
+  const bool is_growing = closure.sense == plan::Sense::kGrowing;
+  if (closure.states.empty()) {
+    return fmt::format("  proof       {} is not safe: {}\n",
+                       is_growing ? "no start" : "the target itself",
+                       verdict::name(closure.blocked.front().second.verdict));
+  }
+  const std::string reached = fmt::format("  proof       {} can be reached from {}, and ",
+                                          host::counted(closure.states.size(), "safe state"),
+                                          is_growing ? "the start" : "the target, backwards,");
+  if (closure.blocked.empty()) {
+    return reached + "no step leads any further\n";
+  }
+  return fmt::format("{}{} that one step more leads to {} not safe\n", reached,
+                     closure.blocked.size() == 1
+                         ? "the only state"
+                         : fmt::format("all {} states", closure.blocked.size()),
+                     closure.blocked.size() == 1 ? "is" : "are");
+}
+
+/// A line, or nothing if no load is known.
+std::string load_ratio_words(const plan::RobotOrder& result) {
+  if (!result.load_ratio_max) {
+    return "";
+  }
+  const std::string largest = beside_one(*result.load_ratio_max, 4);
+  if (std::ranges::none_of(result.order.judgements, &plan::Judgement::is_bound)) {
+    return fmt::format("  load ratio  {} at most on the way\n", largest);
+  }
+  return fmt::format(
+      "  load ratio  {} is the largest of the states that were solved, no state exceeds {}\n",
+      largest, beside_one(*result.load_ratio_bound, 4));
+}
+
+}  // namespace
+
+const char* name(OrderOutcome outcome) {
+  switch (outcome) {
+    case OrderOutcome::kFound:
+      return "found";
+    case OrderOutcome::kNone:
+      return "none";
+    case OrderOutcome::kNotFound:
+      break;
+  }
+  return "not-found";
+}
+
+std::string order_json(const OrderReport& report) {
+  const plan::Order& order = report.result.order;
+  std::string certificate = "null";
+  if (report.result.certificate) {
+    certificate = write_order_certificate(report.target, *report.result.certificate);
+    certificate.pop_back();
+  }
+  return lines('{',
+               {member("result", json_text(std::string(name(order.outcome)))),
+                member("steps", fmt::format("{}", order.steps.size())),
+                member("states", fmt::format("{}", order.state_count)),
+                member("load_ratio_max", json_text(report.result.load_ratio_max)),
+                member("load_ratio_bound", json_text(report.result.load_ratio_bound)),
+                member("margin_min_mm", json_text(report.result.margin_min_mm)),
+                member("seconds", json_text(report.seconds)),
+                member("start", json_text(cells_of(report, order.start.elements()))),
+                member("way", array(way_items(report), 2)), member("help", help_text(report)),
+                member("certificate", certificate)},
+               '}', 0) +
+         "\n";
+}
+
+std::string order_text(const OrderReport& report) {
+  const plan::Order& order = report.result.order;
+  const std::string examined = fmt::format(
+      "  examined    {} in {:.2f} s\n", host::counted(order.state_count, "state"), report.seconds);
+  if (order.outcome == OrderOutcome::kNotFound) {
+    const std::string why =
+        order.undecided_count == 0
+            ? fmt::format("no order found before {}; there may be one\n",
+                          report.is_interrupted ? "the search was interrupted" : "the search ended")
+            : fmt::format("every order leads through states that are undecided, {} at one end\n",
+                          order.undecided_count);
+    return "NOT FOUND   " + why + furthest_words(report) + examined;
+  }
+  if (order.outcome == OrderOutcome::kNone) {
+    return "NONE        there is no safe order that keeps the robot in one piece\n" +
+           none_words(report) + help_words(report) + examined;
+  }
+  std::string text = fmt::format("FOUND       {}, every state {} is safe\n",
+                                 host::counted(order.steps.size(), "step"),
+                                 report.is_reversed ? "left behind" : "on the way");
+  if (std::ranges::any_of(order.steps, [](const auto& group) { return group.size() > 1; })) {
+    text +=
+        "  at once     modules of one step have to arrive at the same instant: states in between "
+        "are not judged\n";
+  }
+  text += load_ratio_words(report.result);
+  if (report.result.margin_min_mm) {
+    text += fmt::format("  margin      {} mm at least on the way\n",
+                        host::significant(*report.result.margin_min_mm, 4));
+  }
+  return text + examined;
+}
+
+std::string order_way_text(const OrderReport& report) {
+  constexpr std::size_t kShownMax = 20;
+  const plan::Order& order = report.result.order;
+  const std::size_t count = order.steps.size();
+  const std::size_t shown = std::min(count, kShownMax);
+  std::vector<std::string> groups;
+  for (std::size_t i = 0; i < shown; ++i) {
+    const std::size_t step = report.is_reversed ? count - 1 - i : i;
+    groups.push_back(words(cells_of(report, order.steps[step])));
+  }
+  if (shown < count) {
+    groups.push_back(fmt::format("and {} more", count - shown));
+  }
+  return fmt::format(
+      "{}{}  written     nowhere: -o STEPS.json writes the order\n",
+      report.is_reversed || order.start.size() > 1
+          ? ""
+          : "  start       " + words(cells_of(report, order.start.elements())) + '\n',
+      groups.empty() ? ""
+                     : fmt::format("  {:<10}  {}\n", report.is_reversed ? "detach" : "attach",
+                                   fmt::join(groups, ", then ")));
+}
+
+}  // namespace holdfast::io

@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <iterator>
+
+#include "connection_list.hpp"
+#include "edge_text.hpp"
+#include "holdfast/host/text.hpp"
+#include "holdfast/io/beside_one.hpp"
+#include "holdfast/io/report.hpp"
+#include "report/limit_report.hpp"
+
+namespace holdfast::io {
+namespace {
+
+/// As many of the most loaded connections are listed.
+constexpr std::size_t kListedCount = 5;
+
+using Out = std::back_insert_iterator<std::string>;
+
+void write_modules(Out out, const model::Robot& robot) {
+  fmt::format_to(out, "  modules     {} existing, {} planned; {} supported, {} fixed\n",
+                 robot.modules().size() - robot.planned_count(), robot.planned_count(),
+                 robot.ground_count(), robot.fixed_count());
+}
+
+/// What the rigid body says with supports anywhere.
+std::string rigid_text(const limit::RigidStability& rigid) {
+  std::string text = fmt::format(": as a rigid body it {}", limit::name(rigid.answer));
+  if (rigid.motion) {
+    text += ", it " + limit::text(*rigid.motion);
+  }
+  if (rigid.tilt_margin_deg && rigid.holds()) {
+    text += fmt::format(", until gravity tilts by {:.1f} degrees", *rigid.tilt_margin_deg);
+  }
+  if (rigid.friction_needed && *rigid.friction_needed > 0) {
+    text += fmt::format(", with friction of {:.3g} or more at the best pressing",
+                        *rigid.friction_needed);
+  }
+  return text;
+}
+
+void write_stability(Out out, const model::Robot& robot, const verdict::Assessment& assessment) {
+  const verdict::RigidBody& body = assessment.simplified;
+  const bool is_doubtful = assessment.verdict == verdict::Verdict::kUndecided;
+  // What the model-based check agrees with, or not.
+  const bool is_said_stable = assessment.contact_model == verdict::ContactModel::kBonded
+                                  ? assessment.is_stable
+                                  : assessment.rigid.holds();
+  const char* word = assessment.is_stable ? "stable" : is_doubtful ? "not certain" : "unstable";
+  if (body.margin_mm) {
+    const auto& [a, b] = *body.edge;
+    const std::array<double, 4> ends = {a.x, a.y, b.x, b.y};
+    fmt::format_to(out, "  stability   {}, margin {} mm at {}{}", word,
+                   host::fixed(*body.margin_mm, 2), *body.margin_mm < 0 ? "the line of " : "",
+                   edge_text(ends));
+  } else if (assessment.stability_rule == verdict::StabilityRule::kHeld) {
+    fmt::format_to(out, "  stability   {}, held by a {}", word,
+                   robot.fixed_count() > 0 ? "fixed module" : "bonded support");
+  } else {
+    fmt::format_to(out, "  stability   {}{}", word, rigid_text(assessment.rigid));
+  }
+  if (!assessment.model.is_settled) {
+    fmt::format_to(out, "; the model-based check has no answer\n");
+  } else if (assessment.model.is_stable == is_said_stable) {
+    fmt::format_to(out, "; the model-based check agrees\n");
+  } else {
+    fmt::format_to(out, "; the model-based check says {}\n",
+                   assessment.model.is_stable ? "stable" : "unstable");
+  }
+}
+
+void write_loads(Out out, const model::Robot& robot, const verdict::Assessment& assessment) {
+  if (assessment.load_ratio_max && !assessment.worst) {
+    const bool is_known = assessment.load_ratio_range.high < verdict::kLoadRatioTie;
+    fmt::format_to(out, "  load ratio  no connection is {}pulled apart\n",
+                   is_known ? "" : "known to be ");
+    return;
+  }
+  const std::vector<std::size_t> order = most_loaded(assessment, kListedCount);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const verdict::ConnectionResult& result = assessment.connections[order[i]];
+    fmt::format_to(out, "  {}  {:>7}  {:<24} {:>9} N axial {:>9} N mm bending\n",
+                   i == 0 ? "load ratio" : "          ", beside_one(result.load_ratio, 4),
+                   model::ends_text(robot, order[i]), host::fixed(result.axial_n, 3),
+                   host::fixed(result.bending_nmm, 1));
+  }
+  if (!order.empty() && !assessment.is_stable) {
+    fmt::format_to(out, "              (not meaningful: the robot {})\n",
+                   assessment.verdict == verdict::Verdict::kUndecided ? "may move" : "topples");
+  } else if (assessment.weight_factor) {
+    fmt::format_to(out, "  weight      the first connection breaks at {} times {}\n",
+                   beside_one(*assessment.weight_factor, 3),
+                   robot.has_payloads() ? "these loads" : "this weight");
+  }
+}
+
+std::string time_text(double seconds) {
+  return seconds < 0.1 ? fmt::format("{:.0f} us", seconds * 1e6) : fmt::format("{:.2f} s", seconds);
+}
+
+void write_solver(Out out, const verdict::Assessment& assessment, double seconds) {
+  const solver::Equilibrium& equilibrium = assessment.equilibrium;
+  const std::string time = time_text(seconds);
+  if (equilibrium.outcome == solver::Outcome::kNotSought) {
+    fmt::format_to(out, "  loads       not sought, as the robot topples; {}\n", time);
+    return;
+  }
+  fmt::format_to(out, "  contact     {}; {}{} in {}\n", verdict::name(assessment.contact_model),
+                 host::counted(equilibrium.steps, "linear solve"),
+                 equilibrium.method == solver::Method::kMultigrid
+                     ? fmt::format(", {} of multigrid",
+                                   host::counted(equilibrium.iteration_count, "iteration"))
+                     : "",
+                 time);
+}
+
+/// Rounded outwards to about twelve digits.
+void write_proof(Out out, const ReportEntry& entry) {
+  constexpr double kOutwards = 1e-12;
+  const certificate::Verification& found = entry.proof->verification;
+  if (!found.is_proved) {
+    fmt::format_to(out, "  proof       none: {}\n", found.reason);
+    return;
+  }
+  const double low = found.ratio_low - std::abs(found.ratio_low) * kOutwards;
+  const double high = found.ratio_high + std::abs(found.ratio_high) * kOutwards;
+  fmt::format_to(
+      out, "  proof       the largest load ratio lies between {:.13g} and {:.13g}; {} in {}\n", low,
+      high, host::counted(entry.proof->solve_count, "linear solve"),
+      time_text(entry.proof_seconds));
+  fmt::format_to(out, "  digest      {}\n", certificate::digest(entry.proof->certificate));
+}
+
+}  // namespace
+
+std::string write_report_text(const ReportEntry& entry) {
+  const verdict::Assessment& assessment = *entry.assessment;
+  std::string text;
+  const Out out(text);
+  for (const verdict::Reason& reason : assessment.reasons) {
+    fmt::format_to(out, "  {}\n", reason_text(*entry.robot, reason));
+  }
+  fmt::format_to(out, "\n");
+  write_modules(out, *entry.robot);
+  write_stability(out, *entry.robot, assessment);
+  write_loads(out, *entry.robot, assessment);
+  write_solver(out, assessment, entry.seconds);
+  if (entry.proof != nullptr) {
+    write_proof(out, entry);
+  }
+  if (entry.limit != nullptr) {
+    text += limit_text(entry);
+  }
+  for (const std::string& warning : entry.warnings) {
+    fmt::format_to(out, "  note        {}\n", warning);
+  }
+  return text;
+}
+
+}  // namespace holdfast::io

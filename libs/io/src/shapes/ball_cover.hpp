@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <bitset>
+#include <span>
+#include <vector>
+
+#include "holdfast/model/cell_index.hpp"
+#include "shapes/module_shape.hpp"
+
+namespace holdfast::io {
+
+/// Which balls of a lattice nobody can see: those whose whole disc other balls nearer to the eye
+/// cover. The disc is cut into squares; one counts as covered if all of it lies behind one ball. So
+/// a ball that is called hidden is hidden; one of which next to nothing is seen may not be found.
+class BallCover {
+ public:
+  explicit BallCover(const base::Lattice& lattice);
+
+  /// Whether balls of `cells` hide the ball in `cell`.
+  bool hides(const model::CellIndex& cells, const base::Cell& cell) const;
+
+ private:
+  static constexpr std::size_t kSquaresAcross = 32;
+
+  using Squares = std::bitset<kSquaresAcross * kSquaresAcross>;
+
+  struct Blocker {
+    base::Cell step;  ///< From the hidden ball, axial.
+    Squares squares;  ///< What it covers.
+  };
+
+  base::Lattice lattice_;
+  Squares disc_;  ///< All squares that the disc meets.
+  std::vector<Blocker> blockers_;
+};
+
+}  // namespace holdfast::io

@@ -1,0 +1,614 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "bounds/energy_bound.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "block_product.hpp"
+#include "equilibria/carried_force.hpp"
+#include "holdfast/base/lattice.hpp"
+#include "holdfast/mechanics/ground_contact.hpp"
+#include "holdfast/model/connector_law.hpp"
+#include "holdfast/model/facet_starts.hpp"
+#include "holdfast/model/material.hpp"
+
+namespace holdfast::plan {
+namespace {
+
+using base::Vec6;
+using mechanics::ContactState;
+
+/// A bound this near to 1 is not trusted: multigrid's load ratios are within 1e-4.
+constexpr double kRatioMax = 1 - 1e-3;
+
+/// New modules above a section are brought into balance so many times there and back.
+constexpr int kSweepCount = 2;
+
+/// A load that costs more than this share of what the load ratio leaves room for, if it goes down
+/// through a single file of modules, is spread: that takes up to a millisecond.
+constexpr double kSpreadShare = 0.1;
+
+/// Where a facet's force may be off by this share of what it lacks to tilting, by its adjoint, that
+/// is soon too coarse and better found anew. With 0.3 or 0.8 growth takes as long or longer.
+constexpr double kStrainMax = 0.5;
+
+bool is_plain(const model::Robot& target) {
+  return std::ranges::none_of(
+      target.facets(), [](const model::Facet& facet) { return facet.touch.friction.has_value(); });
+}
+
+}  // namespace
+
+EnergyBound::EnergyBound(const model::Robot& target, const LocalAdjoints& adjoints)
+    : target_(target),
+      adjoints_(adjoints),
+      local_(target),
+      beam_(model::beam_section(target.material()), target.lattice()),
+      changes_(target),
+      spread_(target),
+      ratio_per_norm_(model::load_ratio_per_energy_norm(target)),
+      first_facet_(model::facet_starts(target)),
+      nodes_(target.modules().size()),
+      u_(target.modules().size()),
+      room_(target.facets().size()),
+      nearby_(target.facets().size()),
+      watched_(target),
+      sway_(target, changes_.stiffness()) {
+  const Vec& h = changes_.stiffness();
+  const double b = target.foot_half_width_mm();
+  facet_per_norm_x_ = std::sqrt(h[3] + h[2] * b * b);
+  facet_per_norm_y_ = std::sqrt(h[4] + h[2] * b * b);
+}
+
+/// Whether the module hands its load to a support of its own.
+bool EnergyBound::has_root(std::size_t module) const {
+  if (section_ != nullptr) {
+    return section_place_[module] >= 0;
+  }
+  return first_facet_[module] < first_facet_[module + 1] ||
+         target_.modules()[module].support == model::Support::kFixed;
+}
+
+/// How far a way down through this neighbour leads aside within two steps, squared, in mm^2.
+double EnergyBound::lean(std::size_t module, std::size_t neighbour) const {
+  const Node& next = nodes_[neighbour];
+  const Vec& below = changes_.place(next.way.to < 0 ? neighbour : base::at(next.way.to));
+  const double x = below[0] - changes_.place(module)[0];
+  const double y = below[1] - changes_.place(module)[1];
+  return x * x + y * y;
+}
+
+/// Finds the way down: to one of the neighbours that are nearest to a support, that through which
+/// it leads down most nearly straight, as a weight that is carried aside costs much.
+void EnergyBound::hang(std::size_t module) {
+  Node& node = nodes_[module];
+  const int straight = base::index(base::down(target_.lattice()));
+  std::int32_t depth_min = std::numeric_limits<std::int32_t>::max();
+  double lean_min = 0;
+  for (const base::Direction direction : base::directions(target_.lattice())) {
+    const int d = base::index(direction);
+    const std::int32_t other = target_.connected()[module][base::at(d)];
+    if (other == model::Robot::kNoNeighbour || !nodes_[base::at(other)].is_there ||
+        nodes_[base::at(other)].depth > depth_min) {
+      continue;
+    }
+    const double aside = lean(module, base::at(other));
+    if (nodes_[base::at(other)].depth < depth_min || aside < lean_min ||
+        (aside == lean_min && d == straight)) {
+      depth_min = nodes_[base::at(other)].depth;
+      lean_min = aside;
+      node.way = {.to = other, .direction = d};
+    }
+  }
+  node.depth = has_root(module) ? 0 : depth_min + 1;
+}
+
+/// Moves until it is in balance, all others staying where they are.
+void EnergyBound::take_place(std::size_t module) {
+  local_.insert(module);
+  u_[module] = block_product(local_.stiffness(module).inverse, local_.pull(module, u_));
+}
+
+/// Adds what the gaps of its beams mean as long as no load goes through these.
+void EnergyBound::open_gaps(std::size_t module) {
+  const Node& node = nodes_[module];
+  for (const base::Direction direction : base::directions(target_.lattice())) {
+    const int d = base::index(direction);
+    const std::int32_t other = local_.neighbour(module, d);
+    if (other == model::Robot::kNoNeighbour ||
+        (nodes_[base::at(other)].is_new && nodes_[base::at(other)].place > node.place)) {
+      continue;
+    }
+    nodes_[base::at(other)].is_host = true;
+    changes_.open_gap(module, d, u_[module], u_[base::at(other)]);
+  }
+}
+
+/// Of all modules that are there, by where they are now.
+verdict::MovedMass EnergyBound::moved_mass() const {
+  verdict::MovedMass moved;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    if (nodes_[i].is_there) {
+      moved.add(target_.mass(i), u_[i][0], u_[i][1]);
+    }
+  }
+  return moved;
+}
+
+/// The force on a stuck facet whose module moves by u, in the facet's middle.
+EnergyBound::Vec EnergyBound::trial_force(const model::Facet& facet, const Vec& u) const {
+  const auto law = mechanics::ground_facet<double>(beam_.stiffness(), target_.material().pitch_mm,
+                                                   2 * target_.foot_half_width_mm(), 0,
+                                                   mechanics::ContactLaw::kRegularised);
+  return mechanics::trial_force(law, beam_.to_local(facet.direction, u));
+}
+
+/// What |s - h w| / 2 may be before the facet tilts.
+void EnergyBound::look_at_facet(std::size_t index) {
+  const model::Facet& facet = target_.facets()[index];
+  const std::size_t module = base::at(facet.module);
+  const bool is_new = nodes_[module].is_new;
+  const Vec moved = trial_force(facet, u_[module]);
+  changes_.weigh_facet(index, is_new ? moved : Vec{});
+  Vec change = changes_.facet_change(index);
+  for (std::size_t i = 0; is_new && i < 6; ++i) {
+    change[i] -= moved[i];
+  }
+  if (facet.is_bonded()) {
+    room_[index] = std::numeric_limits<double>::infinity();
+    return;
+  }
+  const double limit = -(moved[2] + change[2] / 2) * target_.foot_half_width_mm();
+  room_[index] = std::min((limit - std::abs(moved[3] + change[3] / 2)) / facet_per_norm_x_,
+                          (limit - std::abs(moved[4] + change[4] / 2)) / facet_per_norm_y_);
+}
+
+/// What a module's load costs if it goes straight down, through a single file of modules.
+double EnergyBound::way_energy(std::size_t from) const {
+  const Vec load = load_about_origin(target_, from, changes_.place(from));
+  double energy = 0;
+  for (std::size_t module = from; !has_root(module);) {
+    const Way& way = nodes_[module].way;
+    energy += changes_.energy_of(changes_.middle(load, module, way.direction));
+    module = base::at(way.to);
+  }
+  return energy;
+}
+
+/// Whether a module's load, on a single file of modules, takes much of what there is room for.
+bool EnergyBound::is_far_aside(std::size_t module) const {
+  const double norm_max = 2 * (kRatioMax - solved_ratio_) / ratio_per_norm_;
+  return way_energy(module) > kSpreadShare * norm_max * norm_max;
+}
+
+/// What a module's beams put on its neighbours, but for fixed ones.
+std::vector<LoadSpread::Load> EnergyBound::loads_beside(std::size_t module) const {
+  std::vector<LoadSpread::Load> loads;
+  for (const base::Direction direction : base::directions(target_.lattice())) {
+    const std::int32_t other = local_.neighbour(module, base::index(direction));
+    if (other != model::Robot::kNoNeighbour &&
+        target_.modules()[base::at(other)].support != model::Support::kFixed) {
+      LoadSpread::Load& load = loads.emplace_back(LoadSpread::Load{.module = base::at(other)});
+      base::add_times(load.force, -1,
+                      beam_.end_force(base::opposite(direction), u_[load.module], u_[module]));
+    }
+  }
+  return loads;
+}
+
+/// A module's beams bear what they do where it is now, and what they put on its neighbours goes on
+/// to supports through all modules near its way. False if that cannot be.
+bool EnergyBound::spread(std::size_t from) {
+  std::vector<std::size_t> way = {from};
+  while (!has_root(way.back())) {
+    way.push_back(base::at(nodes_[way.back()].way.to));
+  }
+  const std::vector<LoadSpread::Share> shares = spread_.spread(way, loads_beside(from), local_);
+  if (shares.empty()) {
+    return false;
+  }
+  for (const base::Direction direction : base::directions(target_.lattice())) {
+    const std::int32_t other = local_.neighbour(from, base::index(direction));
+    if (other != model::Robot::kNoNeighbour) {
+      changes_.bear(from, base::index(direction), u_[from], u_[base::at(other)]);
+    }
+  }
+  std::ranges::for_each(shares, [&](const LoadSpread::Share& share) { bear(share); });
+  return true;
+}
+
+void EnergyBound::bear(const LoadSpread::Share& share) {
+  const std::vector<std::size_t>& modules = share.part->modules;
+  for (const SpreadPart::Beam& beam : share.part->beams) {
+    changes_.bear(modules[base::at(beam.a)], base::index(beam.direction), share.u[base::at(beam.a)],
+                  beam.b < 0 ? Vec{} : share.u[base::at(beam.b)]);
+  }
+  for (std::size_t i = 0; i < modules.size(); ++i) {
+    for (std::size_t facet = first_facet_[modules[i]]; facet < first_facet_[modules[i] + 1];
+         ++facet) {
+      changes_.bear(facet, trial_force(target_.facets()[facet], share.u[i]));
+      look_at_facet(facet);
+    }
+  }
+}
+
+/// Hands a module's load on to a support.
+void EnergyBound::carry(std::size_t from) {
+  const Vec load = load_about_origin(target_, from, changes_.place(from));
+  std::size_t module = from;
+  for (; !has_root(module); module = base::at(nodes_[module].way.to)) {
+    changes_.hand_on(module, nodes_[module].way.direction, load);
+  }
+  if (section_ != nullptr) {
+    base::add_to(borne_[base::at(section_place_[module])], load);
+    return;
+  }
+  const std::size_t facet = first_facet_[module];
+  if (facet < first_facet_[module + 1]) {
+    changes_.bear(facet,
+                  changes_.middle(load, module, base::index(target_.facets()[facet].direction)));
+    look_at_facet(facet);
+  }
+}
+
+/// Forgets what is known of facets in whose patch, or beside it, modules have come or gone since
+/// the robot was solved last.
+void EnergyBound::forget_nearby(const std::vector<Element>& elements) {
+  std::vector<bool> is_there(nodes_.size());
+  for (const Element element : elements) {
+    is_there[base::at(element)] = true;
+  }
+  std::vector<bool> is_changed(nodes_.size());
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    if (is_there[i] == (nodes_[i].is_there && !nodes_[i].is_new)) {
+      continue;
+    }
+    is_changed[i] = true;
+    for (const std::int32_t other : target_.connected()[i]) {
+      if (other != model::Robot::kNoNeighbour) {
+        is_changed[base::at(other)] = true;
+      }
+    }
+  }
+  forget_nearby(is_changed);
+}
+
+void EnergyBound::forget_nearby(const std::vector<bool>& is_changed) {
+  for (std::optional<LocalAdjoint>& nearby : nearby_) {
+    if (nearby &&
+        std::ranges::any_of(nearby->patch, [&](std::size_t i) { return is_changed[i]; })) {
+      nearby.reset();
+    }
+  }
+}
+
+bool EnergyBound::begin(const std::vector<Element>& elements, const verdict::Assessment& solved,
+                        const SectionResponse* section) {
+  const bool is_stuck =
+      std::ranges::all_of(solved.equilibrium.contact,
+                          [](const ContactState& state) { return state == mechanics::kStuck; });
+  if (solved.verdict != verdict::Verdict::kSafe || !is_stuck || solved.several ||
+      solved.stability_rule == verdict::StabilityRule::kContactForces ||
+      solved.contact_model == verdict::ContactModel::kUnilateral || !is_plain(target_)) {
+    return false;
+  }
+  if (section == nullptr && section_ == nullptr && is_grown_to(elements)) {
+    settle_new();
+  } else {
+    section_ = section;
+    hang_all(elements);
+  }
+  solved_error_ = verdict::kEnergyFactor * solved.equilibrium.energy_error;
+  solved_ratio_ = solved.load_ratio_max ? std::max(0.0, solved.load_ratio_range.high) : 0.0;
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    u_[base::at(elements[i])] = solved.equilibrium.displacement[i];
+  }
+  sway_.begin(elements);
+  still_moved_ = moved_ = moved_mass();
+  if (section_ != nullptr) {
+    still_ = u_;
+    own_error_ = solved_error_;
+    borne_.assign(section_->modules().size(), {});
+  }
+  std::ranges::for_each(facets_, [&](std::size_t facet) { look_at_facet(facet); });
+  watched_.begin(elements, u_);
+  return true;
+}
+
+/// Whether these modules are there and no others: then all of them hang already.
+bool EnergyBound::is_grown_to(const std::vector<Element>& elements) const {
+  const auto is_there = [&](Element element) { return nodes_[base::at(element)].is_there; };
+  return std::ranges::all_of(elements, is_there) &&
+         std::ranges::count_if(nodes_, &Node::is_there) == std::ssize(elements);
+}
+
+/// Begins with nothing but these modules, from supports upwards.
+void EnergyBound::hang_all(const std::vector<Element>& elements) {
+  forget_nearby(elements);
+  std::ranges::fill(nodes_, Node{});
+  facets_.clear();
+  forget_changes();
+  spread_.clear();
+  local_.assign(elements);
+  section_place_.assign(section_ == nullptr ? 0 : nodes_.size(), -1);
+  for (std::size_t i = 0; section_ != nullptr && i < section_->modules().size(); ++i) {
+    section_place_[section_->modules()[i]] = static_cast<std::int32_t>(i);
+  }
+  std::vector<std::size_t> queue;
+  for (const Element element : elements) {
+    Node& node = nodes_[base::at(element)];
+    node.is_there = true;
+    node.depth = std::numeric_limits<std::int32_t>::max() - 1;
+    if (has_root(base::at(element))) {
+      node.depth = 0;
+      queue.push_back(base::at(element));
+    }
+  }
+  for (std::size_t i = 0; i < queue.size(); ++i) {
+    const std::int32_t depth = nodes_[queue[i]].depth + 1;
+    for (const std::int32_t other : target_.connected()[queue[i]]) {
+      if (other != model::Robot::kNoNeighbour && nodes_[base::at(other)].is_there &&
+          nodes_[base::at(other)].depth > depth) {
+        nodes_[base::at(other)].depth = depth;
+        queue.push_back(base::at(other));
+      }
+    }
+  }
+  for (const std::size_t module : queue) {
+    if (!has_root(module)) {
+      hang(module);
+    }
+  }
+  hang_section();
+  for (const Element element : elements) {
+    const std::size_t module = base::at(element);
+    for (std::size_t facet = first_facet_[module]; facet < first_facet_[module + 1]; ++facet) {
+      facets_.push_back(facet);
+    }
+  }
+}
+
+/// The ways between modules of the section: from each to an earlier one.
+void EnergyBound::hang_section() {
+  for (std::size_t i = 1; section_ != nullptr && i < section_->modules().size(); ++i) {
+    const std::size_t module = section_->modules()[i];
+    for (const base::Direction direction : base::directions(target_.lattice())) {
+      const std::int32_t other = local_.neighbour(module, base::index(direction));
+      if (other != model::Robot::kNoNeighbour && section_place_[base::at(other)] >= 0 &&
+          base::at(section_place_[base::at(other)]) < i) {
+        nodes_[module].way = {.to = other, .direction = base::index(direction)};
+      }
+    }
+  }
+}
+
+/// What has been attached since the robot was solved is part of it now.
+void EnergyBound::settle_new() {
+  std::vector<bool> is_changed(nodes_.size());
+  for (const std::size_t module : new_) {
+    nodes_[module].is_new = false;
+    is_changed[module] = true;
+    for (const std::int32_t other : target_.connected()[module]) {
+      if (other != model::Robot::kNoNeighbour) {
+        nodes_[base::at(other)].is_host = false;
+        is_changed[base::at(other)] = true;
+      }
+    }
+  }
+  forget_nearby(is_changed);
+  forget_changes();
+}
+
+void EnergyBound::forget_changes() {
+  new_.clear();
+  changes_.clear();
+  section_ratio_ = 0;
+}
+
+/// Whether a facet that was there when the robot was solved stays pressed all over, as far as the
+/// modules near it show, if |s - h w| / 2 is no more than `radius`.
+bool EnergyBound::is_pressed_nearby(std::size_t index, double radius) {
+  const model::Facet& facet = target_.facets()[index];
+  const Node& node = nodes_[base::at(facet.module)];
+  if (node.is_new) {
+    return false;
+  }
+  std::optional<LocalAdjoint>& nearby = nearby_[index];
+  if (!nearby) {
+    nearby = adjoints_.find(facet, [&](std::size_t module) {
+      return nodes_[module].is_there && !nodes_[module].is_new;
+    });
+  }
+  if (!nearby->gram ||
+      std::ranges::any_of(nearby->patch, [&](std::size_t i) { return nodes_[i].is_host; })) {
+    return false;
+  }
+  const Vec force = trial_force(facet, u_[base::at(facet.module)]);
+  const double b = target_.foot_half_width_mm();
+  const auto holds = [&](double torque, double mx, double my, double lack_per_norm) {
+    const double slack = -force[2] * b - std::abs(torque) - lack_per_norm * solved_error_;
+    return std::ranges::all_of(std::array{1.0, -1.0}, [&](double sign) {
+      return 2 * radius * nearby->gram->norm({b, sign * mx, sign * my}) < slack;
+    });
+  };
+  return holds(force[3], 1, 0, facet_per_norm_x_) && holds(force[4], 0, 1, facet_per_norm_y_);
+}
+
+/// Counts all that are doubtful, as one that is known better makes room for the next only.
+bool EnergyBound::are_pressed(double radius) {
+  bool are_all = true;
+  for (const std::size_t facet : facets_) {
+    if (radius < room_[facet] || is_pressed_nearby(facet, radius)) {
+      continue;
+    }
+    const double strain = strain_by_adjoint(facet);
+    if (!(strain < 1)) {
+      are_all = false;
+    }
+    if (!(strain < kStrainMax)) {
+      ++doubtful_[facet];
+    }
+  }
+  return are_all;
+}
+
+/// Below 1 where a facet stays pressed all over, as its adjoint shows, if the displacements are off
+/// by the energy error at most: how much of what it lacks to tilting it may be off by.
+double EnergyBound::strain_by_adjoint(std::size_t index) {
+  constexpr double kUnknown = std::numeric_limits<double>::infinity();
+  const model::Facet& facet = target_.facets()[index];
+  if (section_ != nullptr || nodes_[base::at(facet.module)].is_new) {
+    return kUnknown;
+  }
+  const double b = target_.foot_half_width_mm();
+  const auto known = watched_.find(index, u_);
+  double largest = known ? 0 : kUnknown;
+  const auto look = [&](double torque, double x, double y) {
+    const double slack = -known->force[0] * b - std::abs(torque);
+    for (const double sign : {1.0, -1.0}) {
+      const double error = known->error({b, sign * x, sign * y}, energy_error());
+      largest = error < slack ? std::max(largest, error / slack) : kUnknown;
+    }
+  };
+  if (known) {
+    look(known->force[1], 1, 0);
+    look(known->force[2], 0, 1);
+  }
+  return largest;
+}
+
+std::map<std::size_t, int> EnergyBound::take_doubtful() { return std::exchange(doubtful_, {}); }
+
+std::optional<double> EnergyBound::add(Element element) {
+  const std::size_t module = base::at(element);
+  if (target_.modules()[module].support == model::Support::kFixed) {
+    return std::nullopt;
+  }
+  hang(module);
+  Node& node = nodes_[module];
+  node.is_there = true;
+  node.is_new = true;
+  node.place = new_.size();
+  sway_.attach(module);
+  if (section_ != nullptr) {
+    return add_above_section(module);
+  }
+  take_place(module);
+  moved_.add(target_.mass(module), u_[module][0], u_[module][1]);
+  open_gaps(module);
+  for (std::size_t facet = first_facet_[module]; facet < first_facet_[module + 1]; ++facet) {
+    facets_.push_back(facet);
+    if (facet > first_facet_[module]) {
+      look_at_facet(facet);
+    }
+  }
+  new_.push_back(module);
+  watched_.attach(module);
+  if (!is_far_aside(module) || !spread(module)) {
+    carry(module);
+  }
+  return bound();
+}
+
+std::optional<double> EnergyBound::add_above_section(std::size_t module) {
+  if (first_facet_[module] < first_facet_[module + 1]) {
+    return std::nullopt;
+  }
+  new_.push_back(module);
+  local_.insert(module);
+  carry(module);
+  Vec sum{};
+  for (const Vec& borne : borne_) {
+    base::add_to(sum, borne);
+  }
+  resultant_ = section_->resultant(sum);
+  solved_error_ = own_error_ + section_->error(resultant_);
+  move_with_section();
+  bear_by_section();
+  return bound();
+}
+
+/// The core moves by its answer to the resultant, and new modules into balance on it, one after
+/// another, there and back.
+void EnergyBound::move_with_section() {
+  const auto move = [&](std::size_t module) {
+    u_[module] = still_[module];
+    base::add_to(u_[module], section_->displacement(module, resultant_));
+  };
+  for (const std::size_t facet : facets_) {
+    move(base::at(target_.facets()[facet].module));
+    look_at_facet(facet);
+  }
+  for (const std::size_t module : new_) {
+    for (const base::Direction direction : base::directions(target_.lattice())) {
+      const std::int32_t other = local_.neighbour(module, base::index(direction));
+      if (other != model::Robot::kNoNeighbour && !nodes_[base::at(other)].is_new) {
+        move(base::at(other));
+      }
+    }
+  }
+  std::ranges::for_each(new_, [&](std::size_t module) { local_.erase(module); });
+  std::ranges::for_each(new_, [&](std::size_t module) { take_place(module); });
+  for (int sweep = 0; sweep < kSweepCount; ++sweep) {
+    for (std::size_t i = new_.size(); i-- > 0;) {
+      take_place(new_[i]);
+    }
+    std::ranges::for_each(new_, [&](std::size_t module) { take_place(module); });
+  }
+  const verdict::MovedMass by_section = section_->moved_mass(resultant_);
+  moved_ = still_moved_;
+  moved_.x_kg_mm += by_section.x_kg_mm;
+  moved_.y_kg_mm += by_section.y_kg_mm;
+  for (const std::size_t module : new_) {
+    moved_.add(target_.mass(module), u_[module][0], u_[module][1]);
+  }
+}
+
+/// The section's modules bear what the answer takes them to; what they get is carried to there, and
+/// what all ways carry is weighed against how new modules lie now.
+void EnergyBound::bear_by_section() {
+  std::ranges::for_each(new_, [&](std::size_t module) { open_gaps(module); });
+  std::vector<Vec> rest = borne_;
+  for (std::size_t i = rest.size(); i-- > 0;) {
+    const std::size_t module = section_->modules()[i];
+    Node& node = nodes_[module];
+    node.is_host = true;
+    if (node.way.to < 0) {
+      continue;  // The first, where nothing remains.
+    }
+    base::add_times(rest[i], -1, section_->share(i, resultant_));
+    const Way& way = node.way;
+    changes_.hand_on_only(module, way.direction, rest[i]);
+    base::add_to(rest[base::at(section_place_[base::at(way.to)])], rest[i]);
+  }
+  changes_.weigh_all();
+  section_ratio_ = section_->load_ratio(resultant_);  // A beam may bear both.
+}
+
+/// A bound of the largest load ratio, if every facet is pressed all over.
+std::optional<double> EnergyBound::bound() {
+  const double radius = energy_error() / 2;
+  const double ratio =
+      solved_ratio_ + changes_.load_ratio() + section_ratio_ + ratio_per_norm_ * radius;
+  if (!(ratio < kRatioMax) || !are_pressed(radius + solved_error_ / 2)) {
+    return std::nullopt;
+  }
+  return ratio;
+}
+
+std::optional<double> EnergyBound::improve(const std::vector<Vec>& displacement,
+                                           const FollowedRobot::Result& known) {
+  settle_new();
+  watched_.improve(known.moved);
+  u_ = displacement;
+  moved_ = moved_mass();
+  solved_error_ = known.energy_error;
+  solved_ratio_ = known.load_ratio;
+  std::ranges::for_each(facets_, [&](std::size_t facet) { look_at_facet(facet); });
+  return bound();
+}
+
+}  // namespace holdfast::plan

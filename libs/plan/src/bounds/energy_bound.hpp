@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "bounds/adjoint.hpp"
+#include "bounds/followed_robot.hpp"
+#include "bounds/load_spread.hpp"
+#include "bounds/section_response.hpp"
+#include "bounds/sway_bound.hpp"
+#include "equilibria/changed_forces.hpp"
+#include "equilibria/local_balance.hpp"
+#include "holdfast/model/lattice_beam.hpp"
+#include "holdfast/model/robot.hpp"
+#include "holdfast/plan/element_set.hpp"
+#include "holdfast/verdict/assessment.hpp"
+#include "holdfast/verdict/moved_mass.hpp"
+
+namespace holdfast::plan {
+
+/// Certifies that a robot stays safe while modules are attached to it, without solving it again.
+///
+/// Let u be the displacements of the solved robot, and s the forces of its springs, in the middle
+/// of each beam and facet six that know nothing of each other, with stiffness h. A module that is
+/// attached moves until it is in balance with its neighbours, which stay, and its load goes down
+/// through beams to a support: so there are displacements u with gaps w, and forces s that balance
+/// all loads. By
+/// [Prager 1947] the exact forces s* lie on the sphere whose diameter joins s and h w:
+///   |s* - (s + h w) / 2| = |s - h w| / 2,      |x|^2 = sum x_i^2 / h_i.
+/// A load ratio c is convex and homogeneous, so with r = load_ratio_per_energy_norm()
+///   c(s*) <= c((s + h w) / 2) + r |s - h w| / 2 <= c(solved) + c(change of s) / 2 + r |s - h w| /
+///   2,
+/// and what a facet lacks to tilting is off by sqrt(h_m + h_f b^2) |s - h w| / 2 at most, b being
+/// half its width. If nothing breaks by that and every facet presses all over, then that is the
+/// equilibrium of the paper's law, with all facets stuck. Each module costs the length of its way
+/// down. Where that way leads far aside, so that its beams bend, s is h w in the module's own
+/// beams, and what these put on its neighbours goes down through all modules near instead
+/// (LoadSpread).
+///
+/// The centre of mass moves as u says, give or take what |s - h w| leaves open (SwayBound).
+///
+/// Facets for which that is too coarse are looked at by what is known of them from the modules
+/// around (LocalAdjoint) or, where somebody has found it, from the whole robot (Adjoint).
+///
+/// Above a section of a slender robot, ways end at the section's modules, and the core moves by its
+/// answer to the resultant there (SectionResponse): s and h w then change alike below. New modules
+/// are brought into balance on the core where it is now.
+class EnergyBound {
+ public:
+  /// Keeps references to the whole robot and to what is known of its facets.
+  EnergyBound(const model::Robot& target, const LocalAdjoints& adjoints);
+
+  /// Begins with a solved robot, whose modules are `elements` of the target, in that order. False
+  /// if nothing can be built on it: it is not safe, a facet tilts or is open, or the polygon does
+  /// not decide.
+  /// With a section of this robot, modules that are attached must not have facets. Keeps a
+  /// reference to it.
+  bool begin(const std::vector<Element>& elements, const verdict::Assessment& solved,
+             const SectionResponse* section = nullptr);
+
+  /// Attaches a module, which must be beside one that is there. Returns a bound of the largest load
+  /// ratio, or none if the robot may be unsafe; it is then to be solved.
+  std::optional<double> add(Element module);
+
+  /// Goes on from better displacements of the robot that is there now, all of whose facets are
+  /// stuck, by module of the target. Returns as add() does.
+  std::optional<double> improve(const std::vector<base::Vec6<double>>& displacement,
+                                const FollowedRobot::Result& known);
+
+  /// No module is attached until the next begin(): gives back what takes much memory.
+  void end() { spread_.clear(); }
+
+  /// From the next begin() on the forces of these facets are looked at with their adjoints, as long
+  /// as modules are attached in the order in which these have grown.
+  void take_adjoints(const Adjoints& adjoints) { watched_.take(adjoints); }
+
+  /// Whether the adjoint of a facet has been asked for since it was taken.
+  bool has_asked_for(std::size_t facet) const { return watched_.has_asked_for(facet); }
+
+  /// How often each facet has left a state without a bound, alone or with others, or nearly so by
+  /// its adjoint, since this was asked last.
+  std::map<std::size_t, int> take_doubtful();
+
+  /// How far the displacements are off in the energy norm, at most.
+  double energy_error() const {
+    return std::sqrt(std::max(0.0, changes_.energy())) + solved_error_;
+  }
+
+  /// By how far bending moves the centre of mass of the robot that is there now, in plan, at most.
+  double shift_mm() const {
+    return moved_.shift_mm(sway_.error_per_norm() * (energy_error() + solved_error_));
+  }
+
+  /// That of a module that has a facet, or is new or beside such a one.
+  const base::Vec6<double>& displacement(std::size_t module) const { return u_[module]; }
+
+ private:
+  using Vec = base::Vec6<double>;
+
+  /// A beam to a module that is nearer to a support.
+  struct Way {
+    std::int32_t to = -1;
+    int direction = 0;
+  };
+
+  struct Node {
+    bool is_there = false;
+    bool is_new = false;   ///< Attached since the robot was solved.
+    bool is_host = false;  ///< A module has been attached beside it since.
+    std::int32_t depth = 0;
+    std::size_t place = 0;  ///< If new: in new_.
+    Way way;                ///< Towards the support; none at a support.
+  };
+
+  bool is_grown_to(const std::vector<Element>& elements) const;
+  void hang_all(const std::vector<Element>& elements);
+  void hang_section();
+  void settle_new();
+  void forget_changes();
+  void forget_nearby(const std::vector<Element>& elements);
+  void forget_nearby(const std::vector<bool>& is_changed);
+  std::optional<double> bound();
+  bool has_root(std::size_t module) const;
+  double lean(std::size_t module, std::size_t neighbour) const;
+  void hang(std::size_t module);
+  void take_place(std::size_t module);
+  void open_gaps(std::size_t module);
+  double way_energy(std::size_t from) const;
+  bool is_far_aside(std::size_t module) const;
+  std::vector<LoadSpread::Load> loads_beside(std::size_t module) const;
+  bool spread(std::size_t from);
+  void bear(const LoadSpread::Share& share);
+  void carry(std::size_t from);
+  std::optional<double> add_above_section(std::size_t module);
+  void move_with_section();
+  void bear_by_section();
+  verdict::MovedMass moved_mass() const;
+  void look_at_facet(std::size_t facet);
+  Vec trial_force(const model::Facet& facet, const Vec& u) const;
+  bool is_pressed_nearby(std::size_t facet, double radius);
+  bool are_pressed(double radius);
+  double strain_by_adjoint(std::size_t facet);
+
+  const model::Robot& target_;
+  const LocalAdjoints& adjoints_;
+  LocalBalance local_;
+  model::LatticeBeam<double> beam_;
+  ChangedForces changes_;
+  LoadSpread spread_;
+  double ratio_per_norm_ = 0;
+  double facet_per_norm_x_ = 0;  ///< How much a facet's lack may be off, by norm.
+  double facet_per_norm_y_ = 0;
+  std::vector<std::size_t> first_facet_;  ///< By module; facets of module i begin there.
+  std::vector<Node> nodes_;
+  std::vector<Vec> u_;               ///< Displacements, by module.
+  std::vector<std::size_t> new_;     ///< Attached since the robot was solved.
+  std::vector<std::size_t> facets_;  ///< There, by index in the target.
+  std::vector<double> room_;         ///< By facet of the target: what |s - h w| / 2 may be.
+  std::vector<std::optional<LocalAdjoint>> nearby_;  ///< By facet, as far as asked for.
+  WatchedFacets watched_;
+  SwayBound sway_;
+  verdict::MovedMass moved_;             ///< By u_, of all modules that are there,
+  verdict::MovedMass still_moved_;       ///< and when the robot was solved.
+  std::map<std::size_t, int> doubtful_;  ///< As take_doubtful() says.
+  double solved_ratio_ = 0;
+  double solved_error_ = 0;
+  const SectionResponse* section_ = nullptr;
+  std::vector<std::int32_t> section_place_;  ///< By module: in the section, or -1.
+  std::vector<Vec> borne_;                   ///< By module of the section, about the origin.
+  SectionResponse::Resultant resultant_{};   ///< Of these.
+  std::vector<Vec> still_;                   ///< u_ when the robot was solved.
+  double own_error_ = 0;                     ///< And solved_error_ then.
+  double section_ratio_ = 0;                 ///< R's.
+};
+
+}  // namespace holdfast::plan

@@ -1,0 +1,159 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "equilibria/changed_forces.hpp"
+
+#include <algorithm>
+
+#include "equilibria/carried_force.hpp"
+#include "holdfast/base/lattice.hpp"
+#include "holdfast/model/material.hpp"
+
+namespace holdfast::plan {
+namespace {
+
+using base::at;
+using base::Direction;
+using base::Vec6;
+
+Vec6<double> opposite_of(Vec6<double> force) {
+  for (double& value : force) {
+    value = -value;
+  }
+  return force;
+}
+
+}  // namespace
+
+ChangedForces::ChangedForces(const model::Robot& target)
+    : target_(&target),
+      beam_(model::beam_section(target.material()), target.lattice()),
+      stiffness_(middle_stiffness(beam_)),
+      half_(base::directions(target.lattice()).size() / 2),
+      beams_(half_ * target.modules().size()),
+      facets_(target.facets().size()),
+      is_touched_(beams_.size()),
+      is_facet_touched_(facets_.size()) {
+  for (std::size_t module = 0; module < target.modules().size(); ++module) {
+    places_.push_back(node_place(target, module));
+  }
+}
+
+double ChangedForces::energy_of(const Vec& force) const {
+  double energy = 0;
+  for (std::size_t i = 0; i < 6; ++i) {
+    energy += force[i] * force[i] / stiffness_[i];
+  }
+  return energy;
+}
+
+ChangedForces::Vec ChangedForces::middle(const Vec& load, std::size_t module, int direction) const {
+  return force_in_middle(beam_, static_cast<Direction>(direction), force_at(load, places_[module]),
+                         target_->material().pitch_mm);
+}
+
+/// What a module hands on, in the frame of its beam.
+ChangedForces::Vec ChangedForces::along(std::size_t module, int direction, const Vec& load) const {
+  if (direction % 2 == 0) {
+    return middle(load, module, direction);
+  }
+  return middle(opposite_of(load), at(target_->connected()[module][at(direction)]), direction ^ 1);
+}
+
+void ChangedForces::clear() {
+  for (const std::size_t beam : touched_) {
+    beams_[beam] = {};
+    is_touched_[beam] = 0;
+  }
+  for (const std::size_t facet : touched_facets_) {
+    facets_[facet] = {};
+    is_facet_touched_[facet] = 0;
+  }
+  touched_.clear();
+  touched_facets_.clear();
+  energy_ = 0;
+  load_ratio_ = 0;
+}
+
+void ChangedForces::touch_facet(std::size_t facet) {
+  if (is_facet_touched_[facet] == 0) {
+    is_facet_touched_[facet] = 1;
+    touched_facets_.push_back(facet);
+  }
+}
+
+void ChangedForces::weigh(std::size_t index) {
+  Spring& beam = beams_[index];
+  if (is_touched_[index] == 0) {
+    is_touched_[index] = 1;
+    touched_.push_back(index);
+  }
+  Vec lack = beam.change;
+  Vec sum = beam.change;
+  for (std::size_t i = 0; i < 6; ++i) {
+    lack[i] -= beam.gap[i];
+    sum[i] += beam.gap[i];
+  }
+  const double energy = energy_of(lack);
+  energy_ += energy - beam.energy;
+  beam.energy = energy;
+  const std::size_t module = index / half_;
+  const int direction = static_cast<int>(2 * (index % half_));
+  const std::size_t other = at(target_->connected()[module][at(direction)]);
+  load_ratio_ =
+      std::max(load_ratio_, connection_ratio(*target_, module, other, direction, sum) / 2);
+}
+
+void ChangedForces::weigh_all() {
+  energy_ = 0;
+  load_ratio_ = 0;
+  for (const std::size_t beam : touched_) {
+    beams_[beam].energy = 0;
+    weigh(beam);
+  }
+}
+
+void ChangedForces::hand_on(std::size_t module, int direction, const Vec& load) {
+  const std::size_t beam = beam_from(module, direction);
+  base::add_to(beams_[beam].change, along(module, direction, load));
+  weigh(beam);
+}
+
+void ChangedForces::hand_on_only(std::size_t module, int direction, const Vec& load) {
+  const std::size_t beam = beam_from(module, direction);
+  beams_[beam].change = along(module, direction, load);
+  weigh(beam);
+}
+
+/// The force in the middle of a module's beam, in the beam's frame.
+ChangedForces::Vec ChangedForces::force_between(int direction, const Vec& u_module,
+                                                const Vec& u_other) const {
+  return direction % 2 == 0
+             ? beam_.middle_force(static_cast<Direction>(direction), u_module, u_other)
+             : beam_.middle_force(static_cast<Direction>(direction ^ 1), u_other, u_module);
+}
+
+void ChangedForces::bear(std::size_t module, int direction, const Vec& u_module,
+                         const Vec& u_other) {
+  const std::size_t beam = beam_from(module, direction);
+  base::add_to(beams_[beam].change, force_between(direction, u_module, u_other));
+  weigh(beam);
+}
+
+void ChangedForces::open_gap(std::size_t module, int direction, const Vec& u_module,
+                             const Vec& u_other) {
+  const std::size_t beam = beam_from(module, direction);
+  beams_[beam].gap = force_between(direction, u_module, u_other);
+  weigh(beam);
+}
+
+void ChangedForces::weigh_facet(std::size_t index, const Vec& moved) {
+  Spring& facet = facets_[index];
+  const double energy = energy_of(base::sum_of<double>(facet.change, -1, moved));
+  energy_ += energy - facet.energy;
+  facet.energy = energy;
+  if (energy != 0) {
+    touch_facet(index);
+  }
+}
+
+}  // namespace holdfast::plan

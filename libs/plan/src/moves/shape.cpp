@@ -1,0 +1,299 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "moves/shape.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <set>
+#include <string>
+#include <tuple>
+
+#include "holdfast/host/text.hpp"
+#include "steps/way.hpp"
+
+namespace holdfast::plan {
+namespace {
+
+using base::Cell;
+
+/// More moves than there are in any plan.
+constexpr int kNever = 1'000'000;
+
+/// Of more modules alike than this, each that is misplaced counts as one move: an assignment takes
+/// as long as their cube.
+constexpr std::size_t kAssignedMax = 60;
+
+/// What makes modules alike.
+using Alike = std::tuple<std::uint16_t, double, std::array<double, 3>, std::array<double, 3>>;
+
+Alike alike_of(const RobotState& robot, std::int32_t index) {
+  const model::Payload payload = robot.module(index).payload.value_or(model::Payload{});
+  return {robot.module(index).kind, robot.mass_kg(index), payload.force_n, payload.torque_nmm};
+}
+
+struct Classes {
+  std::map<Alike, std::vector<Cell>> cells;  ///< Of modules that are not fixed.
+  std::map<Cell, Alike> fixed;
+};
+
+Classes classes_of(const RobotState& robot) {
+  Classes classes;
+  for (std::size_t i = 0; i < robot.modules().size(); ++i) {
+    const auto index = static_cast<std::int32_t>(i);
+    const ModuleState& module = robot.module(index);
+    if (module.is_fixed) {
+      classes.fixed.emplace(module.cell, alike_of(robot, index));
+    } else {
+      classes.cells[alike_of(robot, index)].push_back(module.cell);
+    }
+  }
+  for (auto& [alike, cells] : classes.cells) {
+    std::ranges::sort(cells);
+  }
+  return classes;
+}
+
+base::Error bad_pair(std::string message) {
+  return {.code = base::ErrorCode::kBadInput, .message = std::move(message), .where = {}};
+}
+
+std::optional<base::Error> find_fault(const RobotState& start, const RobotState& target,
+                                      const Classes& from, const Classes& to) {
+  const std::vector<std::string_view> different =
+      differences_of_surroundings(start.surroundings(), target.surroundings());
+  if (!different.empty()) {
+    return bad_pair(
+        fmt::format("both robots differ in {}; allowed are two shapes of one robot where it stands",
+                    fmt::join(different, ", ")));
+  }
+  if (start.module_count() != target.module_count()) {
+    return bad_pair(
+        fmt::format("the robot has {} and its target {}; allowed are shapes of the same modules",
+                    host::counted(start.module_count(), "module"), target.module_count()));
+  }
+  for (const auto& [cell, alike] : from.fixed) {
+    const auto found = to.fixed.find(cell);
+    if (found == to.fixed.end() || found->second != alike) {
+      return bad_pair(fmt::format(
+          "the module {} is fixed, and the target has no such fixed module there; fixed modules "
+          "do not move",
+          model::text(cell)));
+    }
+  }
+  const auto count = [](const auto& entry) { return std::pair(entry.first, entry.second.size()); };
+  if (from.fixed.size() != to.fixed.size() ||
+      !std::ranges::equal(from.cells, to.cells, {}, count, count)) {
+    return bad_pair(
+        "the modules of both robots differ in what is fixed, or in kinds, masses or loads; "
+        "allowed are shapes of the same modules");
+  }
+  return std::nullopt;
+}
+
+/// All changes of place that a move can make, axial.
+std::vector<Cell> translations(const base::Lattice& lattice) {
+  std::set<Cell> found;
+  for (const base::Direction a : base::directions(lattice)) {
+    const Cell& first = lattice.steps[base::at(base::index(a))];
+    found.insert(first);
+    for (const base::Direction b : base::directions(lattice)) {
+      if (a != b) {
+        found.insert(sum(first, lattice.steps[base::at(base::index(b))]));
+      }
+    }
+  }
+  found.erase(Cell{});
+  return {found.begin(), found.end()};
+}
+
+/// How many of these cells, ascending, are none of the others.
+int misplaced(std::span<const Cell> cells, std::span<const Cell> others) {
+  return static_cast<int>(std::ranges::count_if(
+      cells, [&](const Cell& cell) { return !std::ranges::binary_search(others, cell); }));
+}
+
+int along(const Cell& direction, const Cell& way) {
+  return direction.x * way.x + direction.y * way.y + direction.z * way.z;
+}
+
+/// A move gains no more than this along any of these directions: of each pair of opposite ones one.
+std::vector<std::pair<Cell, int>> gains_of(const base::Lattice& lattice) {
+  const std::vector<Cell> ways = translations(lattice);
+  std::vector<std::pair<Cell, int>> gains;
+  for (int code = 14; code < 27; ++code) {
+    const Cell direction = {code / 9 - 1, code / 3 % 3 - 1, code % 3 - 1};
+    int most = 0;
+    for (const Cell& way : ways) {
+      most = std::max(most, along(direction, way));
+    }
+    gains.emplace_back(direction, most);
+  }
+  return gains;
+}
+
+}  // namespace
+
+std::size_t ShapeHash::operator()(const Shape& shape) const {
+  std::uint64_t key = 0;
+  for (const Cell& cell : shape) {
+    for (const std::int32_t coordinate : {cell.x, cell.y, cell.z}) {
+      key = (key ^ static_cast<std::uint32_t>(coordinate)) * 0x9e3779b97f4a7c15U;
+      key ^= key >> 29U;
+    }
+  }
+  return static_cast<std::size_t>(key);
+}
+
+base::Result<ShapeSpace> ShapeSpace::create(const RobotState& start, const RobotState& target) {
+  const Classes from = classes_of(start);
+  const Classes to = classes_of(target);
+  if (auto fault = find_fault(start, target, from, to)) {
+    return *std::move(fault);
+  }
+  ShapeSpace space(start);
+  space.class_begin_.push_back(0);
+  for (const auto& [alike, cells] : from.cells) {
+    const std::vector<Cell>& ends = to.cells.at(alike);
+    space.start_.insert(space.start_.end(), cells.begin(), cells.end());
+    space.target_.insert(space.target_.end(), ends.begin(), ends.end());
+    space.class_begin_.push_back(space.start_.size());
+  }
+  space.gains_ = gains_of(start.lattice());
+  return space;
+}
+
+ShapeSpace ShapeSpace::reversed() const {
+  ShapeSpace space = *this;
+  space.robot_.move(start_, target_);
+  std::swap(space.start_, space.target_);
+  return space;
+}
+
+RobotState ShapeSpace::state_of(const Shape& shape) const {
+  RobotState robot = robot_;
+  robot.move(start_, shape);
+  return robot;
+}
+
+std::size_t ShapeSpace::class_index(const Shape& shape, const Cell& cell) const {
+  std::size_t index = 0;
+  while (!std::binary_search(shape.begin() + static_cast<std::ptrdiff_t>(class_begin_[index]),
+                             shape.begin() + static_cast<std::ptrdiff_t>(class_begin_[index + 1]),
+                             cell)) {
+    ++index;
+  }
+  return index;
+}
+
+std::span<const Cell> ShapeSpace::class_of(const Shape& shape, const Cell& cell) const {
+  const std::size_t index = class_index(shape, cell);
+  return std::span(shape).subspan(class_begin_[index],
+                                  class_begin_[index + 1] - class_begin_[index]);
+}
+
+std::span<const Cell> ShapeSpace::target_class_of(const Shape& shape, const Cell& cell) const {
+  const std::size_t index = class_index(shape, cell);
+  return std::span(target_).subspan(class_begin_[index],
+                                    class_begin_[index + 1] - class_begin_[index]);
+}
+
+Shape ShapeSpace::after(const Shape& shape, const Cell& from, const Cell& to) const {
+  const std::size_t index = class_index(shape, from);
+  Shape moved = shape;
+  const auto begin = moved.begin() + static_cast<std::ptrdiff_t>(class_begin_[index]);
+  const auto end = moved.begin() + static_cast<std::ptrdiff_t>(class_begin_[index + 1]);
+  auto place = std::lower_bound(begin, end, from);
+  *place = to;
+  for (; place != begin && *place < *(place - 1); --place) {
+    std::swap(*place, *(place - 1));
+  }
+  for (; place + 1 != end && *(place + 1) < *place; ++place) {
+    std::swap(*place, *(place + 1));
+  }
+  return moved;
+}
+
+int ShapeSpace::moves_between(const Cell& from, const Cell& to) const {
+  const base::Lattice& lattice = robot_.lattice();
+  const Cell way = difference(base::axial_of(lattice, to), base::axial_of(lattice, from));
+  int most = 0;
+  for (const auto& [direction, gain] : gains_) {
+    const int length = std::abs(along(direction, way));
+    most = std::max(most, gain != 0 ? (length + gain - 1) / gain : length != 0 ? kNever : 0);
+  }
+  return most;
+}
+
+int ShapeSpace::distance(const Shape& shape) const {
+  int total = 0;
+  for (std::size_t i = 0; i + 1 < class_begin_.size(); ++i) {
+    const std::size_t begin = class_begin_[i];
+    const std::size_t count = class_begin_[i + 1] - begin;
+    if (count > kAssignedMax) {
+      total += misplaced({shape.data() + begin, count}, {target_.data() + begin, count});
+      continue;
+    }
+    std::vector<int> costs(count * count);
+    for (std::size_t row = 0; row < count; ++row) {
+      for (std::size_t column = 0; column < count; ++column) {
+        costs[row * count + column] = moves_between(shape[begin + row], target_[begin + column]);
+      }
+    }
+    total += assignment_cost(costs, count);
+  }
+  return total;
+}
+
+// Rows are taken up one by one, each by a shortest augmenting path in reduced costs. Legend: u, v
+// are the duals of rows and columns, `row_of` is the matching, index 0 stands for no row or column.
+int assignment_cost(std::span<const int> costs, std::size_t count) {
+  constexpr int kFar = std::numeric_limits<int>::max();
+  std::vector<int> u(count + 1);
+  std::vector<int> v(count + 1);
+  std::vector<std::size_t> row_of(count + 1);
+  std::vector<std::size_t> way(count + 1);
+  for (std::size_t row = 1; row <= count; ++row) {
+    std::vector<int> least(count + 1, kFar);
+    std::vector<bool> is_used(count + 1);
+    std::size_t column = 0;
+    row_of[0] = row;
+    do {
+      is_used[column] = true;
+      const std::size_t here = row_of[column];
+      int delta = kFar;
+      std::size_t next = 0;
+      for (std::size_t j = 1; j <= count; ++j) {
+        if (is_used[j]) {
+          continue;
+        }
+        const int reduced = costs[(here - 1) * count + j - 1] - u[here] - v[j];
+        if (reduced < least[j]) {
+          least[j] = reduced;
+          way[j] = column;
+        }
+        if (least[j] < delta) {
+          delta = least[j];
+          next = j;
+        }
+      }
+      for (std::size_t j = 0; j <= count; ++j) {
+        if (is_used[j]) {
+          u[row_of[j]] += delta;
+          v[j] -= delta;
+        } else {
+          least[j] -= delta;
+        }
+      }
+      column = next;
+    } while (row_of[column] != 0);
+    for (; column != 0; column = way[column]) {
+      row_of[column] = row_of[way[column]];
+    }
+  }
+  return -v[0];
+}
+
+}  // namespace holdfast::plan

@@ -1,0 +1,333 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/plan/order.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <unordered_set>
+
+#include "bounds/robot_growth.hpp"
+#include "patience.hpp"
+
+namespace holdfast::plan {
+namespace {
+
+using base::Cell;
+using States = std::unordered_set<ElementSet, ElementSetHash>;
+
+ElementSet whole_of(const OrderTask& task) {
+  ElementSet whole(task.target.existing.size());
+  for (std::size_t i = 0; i < task.target.existing.size(); ++i) {
+    whole.insert(static_cast<Element>(i));
+  }
+  return whole;
+}
+
+base::Error bad_start(std::string message) {
+  return {.code = base::ErrorCode::kBadInput, .message = std::move(message), .where = kAtStart};
+}
+
+/// The modules in these cells.
+base::Result<ElementSet> find_modules(const OrderTask& task, const std::vector<Cell>& cells) {
+  model::CellIndex index(task.target.existing.size());
+  for (std::size_t i = 0; i < task.target.existing.size(); ++i) {
+    index.insert(task.target.existing[i], static_cast<std::int32_t>(i));
+  }
+  ElementSet modules(task.target.existing.size());
+  for (const Cell& cell : cells) {
+    const std::int32_t found = index.find(cell);
+    if (found == model::CellIndex::kNone) {
+      return bad_start(fmt::format(
+          "the start has a module in {}, where the target has none: it must be a part of it",
+          model::text(cell)));
+    }
+    if (!modules.contains(found)) {
+      modules.insert(found);
+    }
+  }
+  return modules;
+}
+
+/// Single modules with a support, those nearest to the middle of the target first.
+std::vector<ElementSet> single_starts(const OrderTask& task, const model::Robot& target) {
+  std::vector<std::pair<double, Element>> ranked;
+  const auto place_of = [&](std::size_t i) {
+    return base::place_of(target.lattice(),
+                          base::axial_of(target.lattice(), target.modules()[i].cell));
+  };
+  std::array<double, 2> middle{};
+  for (std::size_t i = 0; i < target.modules().size(); ++i) {
+    middle[0] += place_of(i)[0] / static_cast<double>(target.modules().size());
+    middle[1] += place_of(i)[1] / static_cast<double>(target.modules().size());
+  }
+  for (std::size_t i = 0; i < target.modules().size(); ++i) {
+    if (target.modules()[i].support != model::Support::kNone) {
+      const double x = place_of(i)[0] - middle[0];
+      const double y = place_of(i)[1] - middle[1];
+      ranked.emplace_back(x * x + y * y, static_cast<Element>(i));
+    }
+  }
+  std::ranges::sort(ranked);
+  std::vector<ElementSet> starts;
+  for (const auto& [distance, element] : ranked) {
+    starts.emplace_back(task.target.existing.size()).insert(element);
+  }
+  return starts;
+}
+
+/// All states that an order may begin with.
+base::Result<std::vector<ElementSet>> find_starts(const OrderTask& task,
+                                                  const model::Robot& target) {
+  const std::vector<Cell>& cells = task.start.empty() ? task.target.fixed : task.start;
+  if (cells.empty()) {
+    return single_starts(task, target);
+  }
+  auto modules = find_modules(task, cells);
+  if (!modules) {
+    return modules.error();
+  }
+  for (const Cell& cell : task.target.fixed) {
+    if (std::ranges::find(cells, cell) == cells.end()) {
+      return bad_start(
+          fmt::format("the fixed module {} is not in the start: no step attaches a fixed module",
+                      model::text(cell)));
+    }
+  }
+  const auto start = model::Robot::create(part_of(task.target, modules.value()));
+  if (!start) {
+    return bad_start(
+        fmt::format("the start: {}{}", start.error().message,
+                    task.start.empty() ? "; give one that connects the fixed modules" : ""));
+  }
+  return std::vector<ElementSet>{std::move(modules).value()};
+}
+
+/// Modules that are in all starts.
+ElementSet core_of(const std::vector<ElementSet>& starts, std::size_t module_count) {
+  return starts.size() == 1 ? starts.front() : ElementSet(module_count);
+}
+
+bool touches_target(const OrderTask& task, const Cell& cell) {
+  for (const base::Direction side : base::directions(task.target.lattice)) {
+    const Cell beside = base::neighbour(task.target.lattice, cell, side);
+    if (std::ranges::find(task.target.existing, beside) != task.target.existing.end()) {
+      return true;
+    }
+  }
+  return false;
+}
+
+std::optional<base::Error> find_source_fault(const OrderTask& task) {
+  const bool is_surface = task.rule.reach == Reach::kSurface;
+  if (is_surface != task.rule.source.has_value()) {
+    return base::bad_input(is_surface
+                               ? "along the surface modules come from a source: give its cell"
+                               : "a source is for ways along the surface only");
+  }
+  if (!is_surface) {
+    return std::nullopt;
+  }
+  const std::vector<Cell>& start = task.start.empty() ? task.target.fixed : task.start;
+  if (std::ranges::find(start, *task.rule.source) != start.end()) {
+    return base::bad_input(fmt::format("the source {} is taken by a module of the start",
+                                       model::text(*task.rule.source)));
+  }
+  if (!ReachFinder(task.target, task.rule).has_room(*task.rule.source)) {
+    return base::bad_input(fmt::format(
+        "the source {} lies in an obstacle or below the floor: nothing comes from there",
+        model::text(*task.rule.source)));
+  }
+  if (task.target.existing.size() > 1 && !touches_target(task, *task.rule.source)) {
+    return base::bad_input(
+        fmt::format("the source {} touches no module of the target: nothing that comes "
+                    "from there gets to the robot",
+                    model::text(*task.rule.source)));
+  }
+  return std::nullopt;
+}
+
+/// What both search and replay need, checked.
+struct Setting {
+  model::Robot target;
+  std::vector<ElementSet> starts;
+  ElementSet core;
+};
+
+base::Result<Setting> make_setting(const OrderTask& task, int thread_count) {
+  if (!task.target.planned.empty()) {
+    return base::bad_input("the target has planned modules: all of an order's modules exist in it");
+  }
+  auto target = model::Robot::create(task.target, thread_count);
+  if (!target) {
+    return target.error();
+  }
+  if (const auto fault = find_source_fault(task)) {
+    return *fault;
+  }
+  auto starts = find_starts(task, target.value());
+  if (!starts) {
+    return starts.error();
+  }
+  ElementSet core = core_of(starts.value(), task.target.existing.size());
+  return Setting{.target = std::move(target).value(),
+                 .starts = std::move(starts).value(),
+                 .core = std::move(core)};
+}
+
+/// Solves the states on the way that a bound has certified, as long as there is time.
+class CertifiedStates {
+ public:
+  /// Keeps references.
+  CertifiedStates(RobotGrowth& growth, Order& order, const Patience& patience)
+      : growth_(growth), order_(order), patience_(patience) {}
+
+  /// `tell` is called now and then with a state's number of modules.
+  void solve(const std::function<void(std::size_t)>& tell) {
+    ElementSet state = order_.start;
+    for (std::size_t i = 0; i < order_.judgements.size() && !patience_.is_over(); ++i) {
+      if (i > 0) {
+        state = changed(std::move(state), Sense::kGrowing, order_.steps[i - 1]);
+      }
+      if (order_.judgements[i].is_bound) {
+        places_.push_back(i);
+        states_.push_back(state);
+      }
+      if (states_.size() == kTogether || i + 1 == order_.judgements.size()) {
+        tell(state.size());
+        solve_together();
+      }
+    }
+  }
+
+ private:
+  /// Sets of all modules take memory.
+  static constexpr std::size_t kTogether = 64;
+
+  void solve_together() {
+    const auto solved = growth_.judge_each(states_, [&] { return patience_.is_over(); });
+    for (std::size_t k = 0; k < solved.size(); ++k) {
+      if (solved[k] && solved[k]->is_safe()) {
+        order_.judgements[places_[k]] = *solved[k];
+      }
+    }
+    places_.clear();
+    states_.clear();
+  }
+
+  RobotGrowth& growth_;
+  Order& order_;
+  const Patience& patience_;
+  std::vector<std::size_t> places_;  ///< In the judgements,
+  std::vector<ElementSet> states_;   ///< and what they are of.
+};
+
+void raise(std::optional<double>& largest, double value) {
+  largest = std::max(largest.value_or(value), value);
+}
+
+void take_extremes(RobotOrder& result) {
+  for (const Judgement& judged : result.order.judgements) {
+    if (judged.load_ratio_high) {
+      raise(result.load_ratio_bound, *judged.load_ratio_high);
+    }
+    if (judged.load_ratio_max && !judged.is_bound) {
+      raise(result.load_ratio_max, *judged.load_ratio_max);
+    }
+    if (judged.margin_mm) {
+      result.margin_min_mm =
+          std::min(result.margin_min_mm.value_or(*judged.margin_mm), *judged.margin_mm);
+    }
+  }
+}
+
+}  // namespace
+
+base::Result<RobotOrder> find_robot_order(const OrderTask& task, const RobotOrderOptions& options) {
+  const auto setting = make_setting(task, options.thread_count);
+  if (!setting) {
+    return setting.error();
+  }
+  const Setting& made = setting.value();
+  RobotGrowth growth(task.target, made.target, made.core, task.rule, options.thread_count);
+  if (!task.start.empty()) {
+    const Judgement start = growth.judge(made.starts.front());
+    if (!start.is_safe()) {
+      return bad_start(fmt::format("the start is not safe: {}", verdict::name(start.verdict)));
+    }
+  }
+  const Patience patience(options.seconds_max, options.is_interrupted);
+  RobotOrder result;
+  result.order = find_order(growth, made.starts,
+                            {.group_size = task.group_size,
+                             .seed = options.seed,
+                             .seconds_max = options.seconds_max,
+                             .state_count_max = options.state_count_max,
+                             .is_interrupted = options.is_interrupted,
+                             .told_end = options.told_end,
+                             .progress = options.progress});
+  if (options.is_exact) {
+    CertifiedStates(growth, result.order, patience).solve([&](std::size_t module_count) {
+      if (options.progress) {
+        options.progress(result.order.state_count, module_count, module_count);
+      }
+    });
+  }
+  take_extremes(result);
+  if (result.order.closure) {
+    result.certificate = {.task = task, .closure = *std::move(result.order.closure)};
+    result.order.closure.reset();
+  }
+  return result;
+}
+
+base::Result<CertificateCheck> verify(const OrderCertificate& certificate, int thread_count) {
+  const OrderTask& task = certificate.task;
+  const Closure& closure = certificate.closure;
+  const auto setting = make_setting(task, thread_count);
+  if (!setting) {
+    return setting.error();
+  }
+  const Setting& made = setting.value();
+  RobotGrowth growth(task.target, made.target, made.core, task.rule, thread_count);
+  const States inside(closure.states.begin(), closure.states.end());
+  States beyond;
+  const std::vector<ElementSet> whole = {whole_of(task)};
+  const bool is_growing = closure.sense == Sense::kGrowing;
+  const std::vector<ElementSet>& near = is_growing ? made.starts : whole;
+  const std::vector<ElementSet>& far = is_growing ? whole : made.starts;
+  for (const ElementSet& state : far) {
+    if (inside.contains(state)) {
+      return base::bad_input("the other end is inside the cut: the certificate proves nothing");
+    }
+  }
+  const auto look_at = [&](const ElementSet& state) {
+    if (inside.contains(state) || !beyond.insert(state).second) {
+      return true;
+    }
+    const Judgement judged = growth.judge(state);
+    return !judged.is_safe() && judged.verdict != verdict::Verdict::kUndecided;
+  };
+  const auto leaves = [](const ElementSet& state) {
+    return base::bad_input(
+        fmt::format("a state of {} modules outside the cut is safe, or undecided: the "
+                    "certificate proves nothing",
+                    state.size()));
+  };
+  for (const ElementSet& state : near) {
+    if (!look_at(state)) {
+      return leaves(state);
+    }
+  }
+  for (const ElementSet& state : closure.states) {
+    for (const Batch& group : successors(growth, state, closure.sense, task.group_size)) {
+      const ElementSet next = changed(state, closure.sense, group);
+      if (!look_at(next)) {
+        return leaves(next);
+      }
+    }
+  }
+  return CertificateCheck{.state_count = inside.size(), .blocked_count = beyond.size()};
+}
+
+}  // namespace holdfast::plan
