@@ -49,7 +49,8 @@ class RandomDocument {
     }
     for (std::uint64_t i = below(4); i > 0; --i) {
       Step& step = document.steps.emplace_back();
-      for (std::uint64_t j = below(3) + (i == 1 ? 1 : 0); j > 0; --j) {
+      const bool is_last_or_later = i == 1 || document.steps.size() > 1;
+      for (std::uint64_t j = below(3) + (is_last_or_later ? 1 : 0); j > 0; --j) {
         step.push_back({cell(), color(), attributes()});
       }
     }
