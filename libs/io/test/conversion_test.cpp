@@ -86,7 +86,8 @@ class RandomDocument {
     }
     extension.connectors = connectors(extension.lattice);
     extension.foot_mm = maybe(positive());
-    extension.kinds = {{text() + "a", positive(), connectors(extension.lattice)}, {"b", {}, {}}};
+    const double mass_kg = std::clamp(positive(), 1e-12, 1e12);
+    extension.kinds = {{text() + "a", mass_kg, connectors(extension.lattice)}, {"b", {}, {}}};
     for (std::size_t i = 0; i < document.modules.size(); i += 1 + below(3)) {
       extension.own.push_back({0, i, extension.kinds[below(2)].name, maybe(positive())});
     }
