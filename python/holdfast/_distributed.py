@@ -111,6 +111,6 @@ def events_of(events: Iterable[Any]) -> list[Any]:
 def noise_of(noise: Optional[Mapping[str, float]]) -> dict[str, float]:
     """As the extension takes it."""
     if not isinstance(noise, (Mapping, type(None))):
-        raise _core.Error(f'noise: found {type(noise).__name__}, expected is a mapping from names '
-                          'to numbers')
+        raise _core.Error('noise: expected a mapping from names to numbers, found '
+                          f'{type(noise).__name__}')
     return dict(noise or {})

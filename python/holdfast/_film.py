@@ -28,7 +28,7 @@ class Film:
 
     def __init__(self, reports: list[Report], milliseconds: int) -> None:
         if not reports:
-            raise _core.Error('found no reports, expected is at least one')
+            raise _core.Error('expected at least one report, found none')
         if not 10 <= milliseconds <= 600_000:
             raise _core.Error(f'found {milliseconds} milliseconds, allowed is 10 to 600,000')
         self.reports = reports
@@ -86,7 +86,7 @@ class Film:
             except OSError as error:
                 raise _core.Error(f'{path}: {error.strerror}') from None
         else:
-            raise _core.Error(f'{path}: expected is a name that ends in .gif or .html')
+            raise _core.Error(f'{path}: expected a name that ends in .gif or .html')
 
     def _repr_html_(self) -> str:
         return self.html()

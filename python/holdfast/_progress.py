@@ -19,8 +19,8 @@ def told(progress: Progress, what: str,
     """What is to be called. Counted work says how much is done, of how much."""
     if not isinstance(progress, bool):
         if progress is not None and not callable(progress):
-            raise TypeError(f'progress: found {type(progress).__name__}, expected is a function, '
-                            'True or None')
+            raise TypeError('progress: expected a function, True or None, found '
+                            f'{type(progress).__name__}')
         yield progress
         return
     try:

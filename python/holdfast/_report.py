@@ -24,7 +24,7 @@ Path = Union[str, bytes, 'os.PathLike[str]', 'os.PathLike[bytes]']
 def expect(given: object, kind: type, what: str) -> None:
     """Raises TypeError for anything else."""
     if not isinstance(given, kind):
-        raise TypeError(f'{what}: found {type(given).__name__}, expected is {kind.__name__}')
+        raise TypeError(f'{what}: expected {kind.__name__}, found {type(given).__name__}')
 
 
 class Timings(NamedTuple):

@@ -38,8 +38,8 @@ def _plain(value: Any) -> Any:
         return value.tolist()
     if isinstance(value, np.generic):
         return value.item()
-    raise _core.Error(f'found {type(value).__name__}, expected is a number, a text, a list or a '
-                      'dictionary')
+    raise _core.Error('expected a number, a text, a list or a dictionary, found '
+                      f'{type(value).__name__}')
 
 
 def _json(head: Mapping[str, Any]) -> str:
@@ -48,7 +48,8 @@ def _json(head: Mapping[str, Any]) -> str:
     except ValueError as error:
         if isinstance(error, _core.Error):
             raise
-        raise _core.Error('a number is infinite or no number, expected are finite ones') from None
+        raise _core.Error(
+            'expected finite numbers, found one that is infinite or no number') from None
 
 
 def _floats(what: str, given: Any) -> npt.NDArray[np.float64]:
@@ -67,8 +68,8 @@ def _load_list(loads: Any) -> Any:
     for cell, load in loads.items():
         numbers = _floats('loads', load).ravel().tolist()
         if len(numbers) not in (3, 6):
-            raise _core.Error(f'loads: found {len(numbers)} numbers for {tuple(cell)}, expected '
-                              'are 3, a force, or 6, a force and a torque')
+            raise _core.Error('loads: expected 3 numbers, a force, or 6, a force and a torque, '
+                              f'found {len(numbers)} for {tuple(cell)}')
         entry = {'cell': list(cell), 'force_n': numbers[:3]}
         if len(numbers) == 6:
             entry['torque_nmm'] = numbers[3:]
@@ -120,18 +121,19 @@ def _own(cells: Any, planned: Any, masses: Any, kind_of: Any) -> list[tuple[int,
     if masses is not None and not isinstance(masses, Mapping):
         values = _floats('masses', masses)
         if values.shape not in ((len(existing),), (len(names),)):
-            raise _core.Error(f'masses: found the shape {values.shape}, expected is one number for '
-                              f'each of the {len(existing)} modules, or a mapping from cells')
+            raise _core.Error('masses: expected one number for each of the '
+                              f'{len(existing)} modules, '
+                              f'or a mapping from cells, found the shape {values.shape}')
         masses = dict(zip(names, values.tolist()))
     wanted: dict[Any, tuple[str, float]] = {}
     for cell, kilograms in (masses or {}).items():
         if not np.isfinite(_floats('masses', kilograms)).all():
-            raise _core.Error(f'masses: found {kilograms} for {tuple(cell)}, expected is a number '
-                              'of kg')
+            raise _core.Error(f'masses: expected a number of kg, found {kilograms} for '
+                              f'{tuple(cell)}')
         wanted[tuple(cell)] = ('', float(kilograms))
     if not isinstance(kind_of, (Mapping, type(None))):
-        raise _core.Error(f'kind_of: found {type(kind_of).__name__}, expected is a mapping from '
-                          'cells to names')
+        raise _core.Error('kind_of: expected a mapping from cells to names, found '
+                          f'{type(kind_of).__name__}')
     for cell, kind in (kind_of or {}).items():
         wanted[tuple(cell)] = (kind, wanted.get(tuple(cell), ('', float('nan')))[1])
     places = {cell: (0, index) for index, cell in enumerate(existing)}
@@ -246,14 +248,14 @@ class Robot:
         <holdfast.Robot of 6 modules, cubic>
         """
         if (shape := _floats('origin', origin).shape) != (3,):
-            raise _core.Error(f'origin: found the shape {shape}, expected is a cell')
+            raise _core.Error(f'origin: expected a cell, found the shape {shape}')
         array = np.asarray(voxels)
         if array.ndim != 3 or array.dtype.kind not in 'bui':
-            raise _core.Error(f'voxels: found an array of {array.dtype} of shape {array.shape}, '
-                              'expected are truths or integers of three dimensions')
+            raise _core.Error('voxels: expected truths or integers of three dimensions, found an '
+                              f'array of {array.dtype} of shape {array.shape}')
         if array.size and not 0 <= array.min() <= array.max() <= 3:
-            raise _core.Error('voxels: expected are 0 (nothing), 1 (a module), 2 (a planned one) '
-                              f'and 3 (a fixed one), found are {array.min()} to {array.max()}')
+            raise _core.Error('voxels: expected 0 (nothing), 1 (a module), 2 (a planned one) '
+                              f'and 3 (a fixed one), found {array.min()} to {array.max()}')
         places = np.argwhere((array == 1) | (array == 3))
         for value, key in ((2, 'planned'), (3, 'fixed')):
             if (array == value).any() and key in options:

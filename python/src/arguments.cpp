@@ -9,9 +9,8 @@ namespace holdfast::python {
 namespace {
 
 [[noreturn]] void refuse_type(const py::handle& given, const char* what, const char* expected) {
-  throw py::type_error(std::string(what) + ": found " +
-                       py::type::handle_of(given).attr("__name__").cast<std::string>() +
-                       ", expected is " + expected);
+  throw py::type_error(std::string(what) + ": expected " + expected + ", found " +
+                       py::type::handle_of(given).attr("__name__").cast<std::string>());
 }
 
 [[noreturn]] void refuse_value(const py::handle& given, const char* what, const py::handle& low,

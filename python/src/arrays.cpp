@@ -16,9 +16,9 @@ std::string shape_text(const py::array& array) {
 py::array array_or_fail(const py::handle& given, const char* what, const char* expected) {
   py::array array = py::array::ensure(given);
   if (!array) {
-    throw Error(std::string(what) + ": found " +
+    throw Error(std::string(what) + ": expected " + expected + ", found " +
                 py::str(py::type::handle_of(given).attr("__name__")).cast<std::string>() +
-                " that is no array, expected is " + expected);
+                " that is no array");
   }
   return array;
 }
@@ -30,12 +30,12 @@ constexpr const char* kCells = "an (n, 3) array of integers, a cell in each row"
 py::array_t<std::int64_t> integers(const py::array& array, const char* what, const char* expected) {
   const char kind = array.dtype().kind();
   if (kind == 'O') {
-    throw Error(std::string(what) +
-                ": found objects or numbers of more than 64 bits, expected is " + expected);
+    throw Error(std::string(what) + ": expected " + expected +
+                ", found objects or numbers of more than 64 bits");
   }
   if (kind != 'i' && kind != 'u') {
-    throw Error(std::string(what) + ": found " + py::str(array.dtype()).cast<std::string>() +
-                ", expected is " + expected);
+    throw Error(std::string(what) + ": expected " + expected + ", found " +
+                py::str(array.dtype()).cast<std::string>());
   }
   return py::array_t<std::int64_t, py::array::forcecast>::ensure(array);
 }
@@ -55,8 +55,8 @@ std::vector<base::Cell> cells_of(const py::handle& given, const char* what) {
     return {};
   }
   if (!is_row_of_cells) {
-    throw Error(std::string(what) + ": found an array of shape " + shape_text(array) +
-                ", expected is " + kCells);
+    throw Error(std::string(what) + ": expected " + kCells + ", found an array of shape " +
+                shape_text(array));
   }
   const auto numbers = integers(array, what, kCells);
   const bool is_unsigned = array.dtype().kind() == 'u';
@@ -81,8 +81,8 @@ base::Cell cell_of(const py::handle& given, const char* what) {
   const char* const expected = "a cell, three integers";
   const py::array array = array_or_fail(given, what, expected);
   if (array.ndim() != 1 || array.size() != 3) {
-    throw Error(std::string(what) + ": found an array of shape " + shape_text(array) +
-                ", expected is " + expected);
+    throw Error(std::string(what) + ": expected " + expected + ", found an array of shape " +
+                shape_text(array));
   }
   return cells_of(array.attr("reshape")(1, 3), what).front();
 }

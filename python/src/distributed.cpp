@@ -42,7 +42,7 @@ std::vector<Event> events_of(const py::handle& given) {
   for (const py::handle& entry : py::iter(given)) {
     const auto parts = py::reinterpret_borrow<py::object>(entry).cast<py::tuple>();
     if (parts.size() != 3 && parts.size() != 4) {
-      throw Error("events: expected is (kind, time, cell), with a face behind it for 'cut'");
+      throw Error("events: expected (kind, time, cell), with a face behind it for 'cut'");
     }
     Event& event = events.emplace_back();
     event.kind = utf8_of(py::object(parts[0]), "events");

@@ -225,7 +225,7 @@ std::shared_ptr<io::MoveReport> move(const Structure& start, const Structure& ta
   if (!within.is_none()) {
     const auto corners = cells_of(within, "within");
     if (corners.size() != 2) {
-      throw Error("within: expected are two cells, the corners of a box");
+      throw Error("within: expected two cells, the corners of a box");
     }
     const auto [a, b] = std::pair(corners[0], corners[1]);
     request.within =

@@ -241,7 +241,7 @@ py::array_t<double> masses(const Structure& structure) {
 py::dict material(const Structure& structure) {
   py::dict out;
   for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
-    out[parameter.key] = structure.document.material.*parameter.value;
+    out[py::str(parameter.key)] = structure.document.material.*parameter.value;
   }
   return out;
 }

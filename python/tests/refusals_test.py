@@ -129,7 +129,7 @@ def test_what_a_file_is_called_is_what_is_written(name, tmp_path):
         path = tmp_path / f'robot{ending}'
         text = refuses(lambda: save(path))
         said = f'what is written is {written}, whose files end in {own[0]}' if written else (
-            'expected is a name that ends in .gif or .html')
+            'expected a name that ends in .gif or .html')
         assert text == f'{path}: {said}'
     assert not list(tmp_path.iterdir())
     for ending in own if name != 'animate' else []:

@@ -139,7 +139,7 @@ expect_exit 0 simulate "$safe" --link unit --plan 6,1,2@0 --plan 6,1,2@0 --plan 
   --plan 6,1,2@900 --plan 6,1,2@901 --plan 6,1,2@902 --plan 5,1,2@903
 expect_line out 'robot +safe, load ratio 0\.640'
 expect_exit 64 simulate "$safe" --plan 7,1,2
-expect_line err 'expected is X,Y,Z@TIME, as in'
+expect_line err 'expected X,Y,Z@TIME, as in'
 expect_exit 64 simulate "$safe" --withdraw none@1
 expect_line err 'or all@TIME'
 expect_exit 65 simulate "$safe" --attach 5,1,2@1

@@ -31,7 +31,7 @@ expect_line out '^FOUND +8 steps'
 expect_line out '4 of them not safe'
 expect_exit 1 steps short.json
 expect_exit 64 steps short.json --vtk short.vtu
-expect_line err 'short.vtu: .* expected is a name that ends with .pvd'
+expect_line err 'short.vtu: .* expected a name that ends with .pvd'
 
 # A row cannot go on in its own layer: proved, and proved again.
 shape row.json '[0,0,0],[1,0,0],[2,0,0]'
@@ -47,9 +47,9 @@ expect_line out '^  robot +row, 3 modules$'
 expect_line out '^  to +next, 3 modules$'
 expect_line out '^  steps +1 module at a time, along its neighbours, within \(0,0,0\) to \(3,0,0\)$'
 sed 's/"exhausted"/"tired"/' none.json >tired.json
-expect_refusal 65 'expected is target or exhausted' row.json next.json $layer --verify tired.json
+expect_refusal 65 'expected target or exhausted' row.json next.json $layer --verify tired.json
 sed 's/"end": "[a-z]*"/"end": "middle"/' none.json >middle.json
-expect_refusal 65 'expected is start or target' row.json next.json $layer --verify middle.json
+expect_refusal 65 'expected start or target' row.json next.json $layer --verify middle.json
 echo old >kept.json
 expect_exit 1 move row.json next.json $layer -o kept.json
 expect_line err 'kept.json: note: not written, as there are no moves'

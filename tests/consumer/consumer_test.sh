@@ -21,7 +21,7 @@ uses_shared() {
   local loaded=no
   # grep reads all, as -q would not: then ldd may end by a broken pipe, which counts here.
   ! ldd "$2" | grep 'libholdfast\.so' >/dev/null || loaded=yes
-  [ "$1" = "$loaded" ] || fault "$2: loads the shared library: $loaded, expected is $1"
+  [ "$1" = "$loaded" ] || fault "$2: loads the shared library: expected $1, found $loaded"
 }
 
 cmake --install "$build" --prefix "$work/first" >/dev/null

@@ -201,7 +201,7 @@ def check_bad_input(program, repository, folder):
         (64, 'named for two files', ['-', '--from', '-']),
         (64, 'belong together', [balance, '--reach', 'surface']),
         (64, 'belong together', [balance, '--source', '0,0,0']),
-        (64, 'expected is a cell', [balance, '--reach', 'surface', '--source', '1,2']),
+        (64, 'expected a cell', [balance, '--reach', 'surface', '--source', '1,2']),
         (64, '--seconds', [balance, '--seconds', 'soon']),
         (64, '--seed', [balance, '--seed', 'x']),
         (64, '--seed', [balance, '--seed', '-1']),

@@ -187,7 +187,7 @@ inline void add_connections(CLI::App& command, std::string& choice) {
                   "ratios, these first")
       ->type_name("all|broken|N")
       ->check([](const std::string& text) {
-        return io::find_connection_choice(text) ? "" : "expected is all, broken or a count";
+        return io::find_connection_choice(text) ? "" : "expected all, broken or a count";
       })
       ->capture_default_str();
 }

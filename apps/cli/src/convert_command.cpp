@@ -61,7 +61,7 @@ int run(const ConvertArguments& options) {
   const bool to_binary = options.to.ends_with(".holdfast");
   if (!to_json && !to_binary && !options.to.ends_with(".xml")) {
     fmt::print(stderr,
-               "holdfast: {}: the ending says the format: expected is .json (holdfast JSON), .xml "
+               "holdfast: {}: the ending says the format: expected .json (holdfast JSON), .xml "
                "(VisibleSim XML) or .holdfast (binary)\n",
                options.to);
     return kExitUsage;

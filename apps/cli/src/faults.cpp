@@ -87,12 +87,12 @@ std::optional<ChangePlace> read_change_place(std::string_view text, bool allows_
 }
 
 std::string change_usage(std::string_view option, std::string_view text, bool allows_all) {
-  return fmt::format("--{} {}: expected is X,Y,Z@TIME{}, as in 2,1,0@1.5", option, text,
+  return fmt::format("--{} {}: expected X,Y,Z@TIME{}, as in 2,1,0@1.5", option, text,
                      allows_all ? " or all@TIME" : "");
 }
 
 std::string fault_usage(std::string_view option, std::string_view text, bool has_face) {
-  return fmt::format("--{} {}: expected is {}@TIME with the cell of an existing module, as in {}",
+  return fmt::format("--{} {}: expected {}@TIME with the cell of an existing module, as in {}",
                      option, text, has_face ? "X,Y,Z:FACE" : "X,Y,Z",
                      has_face ? "2,1,0:+z@1.5" : "2,1,0@1.5");
 }

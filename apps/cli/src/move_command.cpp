@@ -171,7 +171,7 @@ void add_ways(CLI::App& command, MoveArguments& options) {
                   "No module leaves the box of cells with these corners")
       ->type_name("X,Y,Z:X,Y,Z")
       ->check([](const std::string& text) {
-        return box_of(text) ? "" : "expected are two cells, such as 0,0,0:9,9,9";
+        return box_of(text) ? "" : "expected two cells, such as 0,0,0:9,9,9";
       });
   command.add_flag("--geometry-only", options.ignores_mechanics,
                    "Seek moves that need not be safe, and judge their stages afterwards");

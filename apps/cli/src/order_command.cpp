@@ -215,7 +215,7 @@ void add_ways(CLI::App& command, OrderArguments& options) {
   command.add_option("--source", options.source, "Where modules come from along the surface")
       ->type_name("X,Y,Z")
       ->check([](const std::string& text) {
-        return cell_of(text) ? "" : "expected is a cell, such as 3,0,0";
+        return cell_of(text) ? "" : "expected a cell, such as 3,0,0";
       });
   command
       .add_option("--group", options.group_size,

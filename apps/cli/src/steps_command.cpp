@@ -123,14 +123,14 @@ bool is_in_series(const std::filesystem::path& file, const std::filesystem::path
 /// A series is several files, which must not be the input, nor one another output.
 bool complain_of_series(const StepsArguments& options) {
   if (options.vtk == "-") {
-    fmt::print(stderr, "holdfast: --vtk -: a series is several files; expected is a name\n");
+    fmt::print(stderr, "holdfast: --vtk -: a series is several files; expected a name\n");
     return true;
   }
   if (options.vtk.ends_with(".vtu")) {
     fmt::print(
         stderr,
         "holdfast: --vtk {}: the steps are several .vtu files and one list of them, which is to "
-        "be named here; expected is a name that ends with .pvd\n",
+        "be named here; expected a name that ends with .pvd\n",
         io::one_line(options.vtk));
     return true;
   }

@@ -96,7 +96,8 @@ std::optional<base::Error> Checkpoint::read() {
 std::optional<base::Error> Checkpoint::take(const std::string& bytes) {
   const std::size_t body = bytes.size() < sizeof(std::uint64_t) ? 0 : bytes.size() - 8;
   if (!std::string_view(bytes).starts_with(kMagic)) {
-    return base::bad_input("is no checkpoint, expected are the letters HOLDSTEP, at byte 0");
+    return base::bad_input(
+        "is no checkpoint: expected the letters HOLDSTEP at byte 0, found others");
   }
   if (Reader(std::string_view(bytes).substr(body)).take<std::uint64_t>() !=
       io::text_sum(std::string_view(bytes).substr(0, body))) {

@@ -28,8 +28,8 @@ base::Result<std::string> read_stream(std::istream& stream) {
     is_binary = is_binary || (text.empty() && block.starts_with(io::kBinaryMagic));
     const std::size_t at = is_binary ? std::string_view::npos : block.find('\0');
     if (at != std::string_view::npos) {
-      return unreadable("holds a zero byte after " + std::to_string(text.size() + at) +
-                        " bytes, expected is text, in UTF-8");
+      return unreadable("expected text in UTF-8, found a zero byte after " +
+                        std::to_string(text.size() + at) + " bytes");
     }
     text += block;
     if (text.size() > io::kFileBytesMax) {
@@ -55,7 +55,7 @@ base::Result<std::string> read_file(const fs::path& path) {
     return unreadable("no such file");
   }
   if (fs::is_directory(status)) {
-    return unreadable("is a folder, expected is a file: VisibleSim XML, holdfast JSON or binary");
+    return unreadable("expected a file of VisibleSim XML, holdfast JSON or binary, found a folder");
   }
   std::ifstream stream(path, std::ios::binary);
   if (!stream) {

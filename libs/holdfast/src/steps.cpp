@@ -34,7 +34,7 @@ base::Result<StepsFile> load_steps(const std::filesystem::path& path,
   if (io::step_count(document) == 0) {
     return base::Error{.code = base::ErrorCode::kBadInput,
                        .message = "the structure has no steps; holdfast check judges it as it is",
-                       .where = "/steps"};
+                       .where = io::step_list(document)};
   }
   std::string name = document.name.empty() ? path.stem().string() : document.name;
   return StepsFile{

@@ -273,7 +273,7 @@ base::Result<OutputFile> OutputFile::open(const fs::path& path) {
     error = errno == ENOENT ? writer->open_temporary(end, nullptr) : errno;
   } else if (S_ISDIR(status.st_mode)) {
     return base::Error{.code = base::ErrorCode::kUnwritable,
-                       .message = "is a folder, expected is the name of a file to write"};
+                       .message = "expected the name of a file to write, found a folder"};
   } else if (!S_ISREG(status.st_mode) || status.st_nlink > 1) {
     error = writer->open_directly(end, S_ISREG(status.st_mode));
   } else if (::access(end.c_str(), W_OK) != 0) {

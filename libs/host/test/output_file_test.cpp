@@ -157,7 +157,7 @@ TEST_F(OutputFileTest, what_cannot_be_written_is_an_error) {
   EXPECT_TRUE(write("/dev/full", std::string(1U << 20U, 'x')));
   EXPECT_FALSE(write("/dev/null", "text"));
   EXPECT_EQ(write(folder_, "text")->message,
-            "is a folder, expected is the name of a file to write");
+            "expected the name of a file to write, found a folder");
   EXPECT_TRUE(write(place("no") / "folder", "text"));
   if (::geteuid() != 0) {  // The superuser may write what is not writable.
     put(place("mine"), "old");

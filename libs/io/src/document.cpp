@@ -21,13 +21,13 @@ base::Result<Format> detect_format(std::string_view text) {
     return Format::kJson;
   }
   if (text.empty()) {
-    return base::Error{base::ErrorCode::kBadInput, "the input is empty, expected is a structure",
+    return base::Error{base::ErrorCode::kBadInput, "expected a structure, found an empty input",
                        ""};
   }
   return base::Error{
       base::ErrorCode::kBadInput,
-      fmt::format("the input begins with {}, expected is VisibleSim XML, which "
-                  "begins with '<', holdfast JSON, with '{{', or binary, with HOLDFAST",
+      fmt::format("expected VisibleSim XML, which begins with '<', holdfast JSON, with '{{', or "
+                  "binary, with HOLDFAST; found {} at the beginning",
                   excerpt(text.substr(0, 8))),
       ""};
 }

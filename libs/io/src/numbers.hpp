@@ -11,6 +11,11 @@
 
 namespace holdfast::io {
 
+/// What a number above zero is at least, and a mass at most: what model::Robot allows. Beyond,
+/// products with other numbers leave the range of double.
+inline constexpr double kPositiveMin = 1e-12;
+inline constexpr double kPositiveMax = 1e12;
+
 /// Integers from `lowest` to `highest`.
 struct IntegerRange {
   std::int32_t lowest = 0;

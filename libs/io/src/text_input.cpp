@@ -121,9 +121,8 @@ std::optional<base::Error> find_input_fault(std::string_view text) {
   }
   if (text.find_first_not_of(kBlanks) == std::string_view::npos) {
     return base::Error{ErrorCode::kBadInput,
-                       text.empty() ? "the input is empty, expected is a structure"
-                                    : "the input is empty but for white space, expected is a "
-                                      "structure"};
+                       text.empty() ? "expected a structure, found an empty input"
+                                    : "expected a structure, found an input of white space only"};
   }
   if (const auto offset = find_bad_byte(text)) {
     return base::Error{

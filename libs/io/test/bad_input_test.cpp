@@ -58,11 +58,11 @@ TEST(BadInput, without_a_structure_is_refused) {
   expect_refusal({"", "", "empty"});
   expect_refusal({" \n\t\r\n ", "", "empty"});
   expect_refusal({"\xEF\xBB\xBF", "", "empty"});
-  expect_refusal({"modules: 3", "", "begins with 'modules:'"});
+  expect_refusal({"modules: 3", "", "found 'modules:' at the beginning"});
   expect_refusal(
       {"\x7F"
        "ELF\x02",
-       "", "begins with '?ELF?'"});
+       "", "found '?ELF?' at the beginning"});
   for (const char* text : {"", "  "}) {
     EXPECT_FALSE(read_json(text));
     EXPECT_FALSE(read_visiblesim(text));
@@ -174,7 +174,7 @@ TEST(BadInput, that_breaks_the_rules_of_xml_is_refused_with_its_line) {
       {"<world>\n<block fixed=\"&f;\"/></world>", "line 2", "the entity &f; is unknown"});
   expect_refusal({"<world name='a&#0;b'/>", "line 1", "the entity &#0; is unknown"});
   expect_refusal({"<world name='a&#x00;b'/>", "line 1", "the entity &#x00; is unknown"});
-  expect_refusal({"<!DOCTYPE html><html><body/></html>", "", "no element <world>"});
+  expect_refusal({"<!DOCTYPE html><html><body/></html>", "", "found no element <world>"});
   expect_refusal({"<parameters/>\n<world/>", "line 2", "<blockList>"});
   expect_refusal({xml("") + "\n<world/>", "line 4", "a second <world>"});
   expect_refusal({"<parameters/>\n<parameters/><world/>", "line 2", "a second <parameters>"});
@@ -239,9 +239,9 @@ TEST(BadInput, that_breaks_the_rules_of_json_is_refused_with_its_line) {
 
 TEST(BadInput, of_another_json_format_is_refused) {
   expect_refusal({"{\"format\": \"gltf\", \"version\": 1}", "/format",
-                  "found 'gltf', expected is \"holdfast-structure\""});
+                  "expected \"holdfast-structure\", found 'gltf'"});
   expect_refusal({"{}", "", "key \"format\" is missing"});
-  expect_refusal({"[]", "", "found an array, expected is an object"});
+  expect_refusal({"[]", "", "expected an object, found an array"});
   expect_refusal(
       {"{\"format\": \"holdfast-structure\"}", "", "key \"version\" is missing, expected 1 or 2"});
   expect_refusal({"{\"format\": \"holdfast-structure\", \"version\": 3}", "/version",
@@ -255,18 +255,20 @@ TEST(BadInput, of_json_names_what_was_found_and_what_is_allowed) {
   const auto bad = [](std::string_view members, std::string_view where, std::string_view message) {
     expect_refusal({json(members), std::string(where), std::string(message)});
   };
-  bad(R"("modules": {})", "/modules", "found an object, expected is an array");
-  bad(R"("modules": [7])", "/modules/0", "found 7, expected is a cell");
-  bad(R"("modules": [[1,2]])", "/modules/0", "found an array of 2, expected are three integers");
+  bad(R"("modules": {})", "/modules", "expected an array, found an object");
+  bad(R"("modules": [7])", "/modules/0",
+      "expected a cell [x, y, z] or an object with the key \"cell\", found 7");
+  bad(R"("modules": [[1,2]])", "/modules/0", "expected three integers, found an array of 2");
   bad(R"("modules": [[0,0,0], [1,2,3.5]])", "/modules/1/2",
-      "found 3.5, expected is an integer from -1000000 to 1000000");
+      "expected an integer from -1000000 to 1000000, found 3.5");
   bad(R"("modules": [[0,0,99999999999999]])", "/modules/0/2", "found 99999999999999");
-  bad(R"("modules": [[0,0,"1"]])", "/modules/0/2", "found '1', expected is an integer");
+  bad(R"("modules": [[0,0,"1"]])", "/modules/0/2",
+      "expected an integer from -1000000 to 1000000, found '1'");
   bad(R"("modules": [{"fixed": true}])", "/modules/0", "the key \"cell\"");
   bad(R"("modules": [{"cell": [0,0,0], "fixed": 1}])", "/modules/0/fixed", "true or false");
   bad(R"("modules": [{"cell": [0,0,0], "color": [0,0,300]}])", "/modules/0/color/2", "0 to 255");
-  bad(R"("modules": [], "support_z": 1e9)", "/support_z", "expected is an integer");
-  bad(R"("modules": [], "name": 5)", "/name", "found 5, expected is a string");
+  bad(R"("modules": [], "support_z": 1e9)", "/support_z", "expected an integer");
+  bad(R"("modules": [], "name": 5)", "/name", "expected a string, found 5");
   bad(R"("modules": [], "material": {"mass_kg": "1"})", "/material/mass_kg", "a number");
   bad(R"("modules": [], "later_steps": [[[0,0]]])", "/later_steps/0/0", "an array of 2");
   bad(R"("modules": [], "known_answer": {"margin_mm": 1})", "/known_answer", "\"verdict\"");

@@ -49,7 +49,8 @@ class RandomDocument {
     }
     for (std::uint64_t i = below(4); i > 0; --i) {
       Step& step = document.steps.emplace_back();
-      for (std::uint64_t j = below(3) + (i == 1 ? 1 : 0); j > 0; --j) {
+      const bool is_last_or_later = i == 1 || document.steps.size() > 1;
+      for (std::uint64_t j = below(3) + (is_last_or_later ? 1 : 0); j > 0; --j) {
         step.push_back({cell(), color(), attributes()});
       }
     }
@@ -85,7 +86,8 @@ class RandomDocument {
     }
     extension.connectors = connectors(extension.lattice);
     extension.foot_mm = maybe(positive());
-    extension.kinds = {{text() + "a", positive(), connectors(extension.lattice)}, {"b", {}, {}}};
+    const double mass_kg = std::clamp(positive(), 1e-12, 1e12);
+    extension.kinds = {{text() + "a", mass_kg, connectors(extension.lattice)}, {"b", {}, {}}};
     for (std::size_t i = 0; i < document.modules.size(); i += 1 + below(3)) {
       extension.own.push_back({0, i, extension.kinds[below(2)].name, maybe(positive())});
     }

@@ -3,11 +3,12 @@
 //
 // Where bodies get through when they move, beside bodies that are turned by a degree at a time and
 // compared with all others: squares that turn about an edge, balls and discs that roll about one or
-// two neighbours.
+// two neighbours, prisms that turn about their corners.
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <set>
 #include <vector>
@@ -245,6 +246,126 @@ TEST(Rolling, balls_and_discs_move_where_they_come_nearer_than_a_pitch_to_nobody
 
   EXPECT_GT(allowed_count, holdfast::test::campaign(1000));
   EXPECT_GT(barred_count, holdfast::test::campaign(100));
+}
+
+// --- Prisms -------------------------------------------------------------------------------------
+
+using Complex = std::complex<double>;
+using Corners = std::array<Complex, 6>;
+
+Complex flat(const Cell& axial) {
+  const auto place = base::place_of<double>(base::kHexagonalPrism, axial);
+  return {place[0], place[1]};
+}
+
+/// The hexagon of the cell at the origin, whose neighbours lie opposite its sides.
+Corners hexagon() {
+  const Complex corner = (flat({1, 0, 0}) + flat({0, 1, 0})) / 3.0;
+  Corners corners;
+  for (std::size_t k = 0; k < 6; ++k) {
+    corners[k] = corner * std::polar(1.0, static_cast<double>(k) * std::numbers::pi / 3);
+  }
+  return corners;
+}
+
+/// By how much two hexagons overlap, along the one of their normals along which it is least.
+double overlap(const Corners& a, const Corners& b) {
+  double least = 1e300;
+  for (const Corners& sides : {a, b}) {
+    for (std::size_t k = 0; k < 6; ++k) {
+      const Complex side = sides[(k + 1) % 6] - sides[k];
+      const auto range = [&](const Corners& corners) {
+        std::array<double, 6> along{};
+        std::ranges::transform(corners, along.begin(), [&](const Complex& c) {
+          return (std::conj(side * Complex(0, 1)) * c).real() / std::abs(side);
+        });
+        return std::ranges::minmax(along);
+      };
+      const auto [a_low, a_high] = range(a);
+      const auto [b_low, b_high] = range(b);
+      least = std::min({least, a_high - b_low, b_high - a_low});
+    }
+  }
+  return least;
+}
+
+/// Whether a prism, turned by a degree at a time by a third about the corner that its cell, the
+/// next and the carrier's share, overlaps nobody.
+bool turns_freely(const Cell& from, const Cell& to, const Cell& carrier,
+                  const std::set<Cell>& taken) {
+  const Complex hinge = (flat(from) + flat(to) + flat(carrier)) / 3.0;
+  const double sense = std::arg((flat(to) - hinge) / (flat(from) - hinge)) > 0 ? 1 : -1;
+  for (int degrees = 0; degrees <= 120; ++degrees) {
+    Corners turned = hexagon();
+    for (Complex& corner : turned) {
+      corner = hinge + (flat(from) + corner - hinge) *
+                           std::polar(1.0, sense * degrees * std::numbers::pi / 180);
+    }
+    for (const Cell& cell : taken) {
+      Corners other = hexagon();
+      std::ranges::for_each(other, [&](Complex& corner) { corner += flat(cell); });
+      if (overlap(turned, other) > 1e-6) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+/// Where the prism at the origin gets in its layer: by a slide where nobody is beside its way, by a
+/// turn about a corner, or by two about the same module.
+std::set<Cell> turned_prisms(const std::set<Cell>& taken) {
+  const std::array<Cell, 6> round = {
+      {{1, 0, 0}, {0, 1, 0}, {-1, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {1, -1, 0}}};
+  const auto plus = [](const Cell& a, const Cell& b) { return Cell{a.x + b.x, a.y + b.y, 0}; };
+  std::set<Cell> arrivals;
+  for (std::size_t k = 0; k < 6; ++k) {
+    if (!taken.contains(round[k]) && !taken.contains(round[(k + 1) % 6]) &&
+        !taken.contains(round[(k + 5) % 6])) {
+      arrivals.insert(round[k]);
+    }
+    if (!taken.contains(round[k])) {
+      continue;
+    }
+    // The origin lies from the carrier as round[k + 3] does.
+    for (const std::size_t way : {1U, 5U}) {
+      const Cell next = plus(round[k], round[(k + 3 + way) % 6]);
+      const Cell last = plus(round[k], round[(k + 3 + 2 * way) % 6]);
+      if (turns_freely({0, 0, 0}, next, round[k], taken)) {
+        arrivals.insert(next);
+        if (turns_freely(next, last, round[k], taken)) {
+          arrivals.insert(last);
+        }
+      }
+    }
+  }
+  return arrivals;
+}
+
+TEST(Rolling, a_prism_turns_where_its_corners_meet_nobody) {
+  base::Rng rng(1);
+  int move_count = 0;
+  for (int round = 0; round < holdfast::test::campaign(100); ++round) {
+    model::RobotSpec spec{.support_z = std::nullopt, .lattice = base::kHexagonalPrism};
+    std::set<Cell> taken;
+    const std::uint64_t share = 1 + rng.below(6);
+    for (std::int32_t x = -3; x <= 3; ++x) {
+      for (std::int32_t y = -3; y <= 3; ++y) {
+        spec.fixed.push_back({x, y, -1});
+        spec.existing.push_back({x, y, -1});
+        spec.obstacles.push_back({.from = {x, y, 1}, .to = {x, y, 1}});
+        if ((x != 0 || y != 0) && rng.below(8) < share) {
+          taken.insert({x, y, 0});
+          spec.existing.push_back({x, y, 0});
+        }
+      }
+    }
+    spec.existing.push_back({0, 0, 0});
+    const std::set<Cell> truth = turned_prisms(taken);
+    EXPECT_EQ(arrivals_of(state_of(spec), {0, 0, 0}, {}), truth) << round;
+    move_count += static_cast<int>(truth.size());
+  }
+  EXPECT_GT(move_count, holdfast::test::campaign(30));
 }
 
 }  // namespace

@@ -223,7 +223,7 @@ TEST(Proof, names_the_material_as_files_do) {
   const Robot robot = Robot::create(spec).value();
   const std::string text = certificate::write(prove(robot, verdict::assess(robot)).certificate);
   for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
-    const std::string name = std::string("\n") + parameter.key + ' ';
+    const std::string name = '\n' + std::string(parameter.key) + ' ';
     const std::size_t at = text.find(name);
     if (parameter.value == &model::Material::elastic_modulus_mpa) {
       EXPECT_EQ(at, std::string::npos);

@@ -59,7 +59,8 @@ const char* find_own_fault(const ModuleRecord& record, const solver::Bricks& bri
 
 std::optional<base::Error> find_fault(const BinaryHead& head, std::uint64_t file_size) {
   if (head.magic != BinaryHead().magic) {
-    return base::bad_input("is no binary structure, expected are the letters HOLDFAST", "byte 0");
+    return base::bad_input("is no binary structure: expected the letters HOLDFAST, found others",
+                           "byte 0");
   }
   if (head.version != BinaryHead::kVersion) {
     return base::bad_input(
@@ -83,7 +84,7 @@ std::optional<base::Error> find_fault(const BinaryHead& head, std::uint64_t file
   const std::uint64_t expected = head.records_begin() + sizeof(ModuleRecord) * head.module_count;
   if (file_size != expected) {
     return base::bad_input(
-        fmt::format("{} long, expected are {}", host::counted(file_size, "byte"), expected),
+        fmt::format("expected {}, found {}", host::counted(expected, "byte"), file_size),
         fmt::format("byte {}", std::min(file_size, expected)));
   }
   return std::nullopt;

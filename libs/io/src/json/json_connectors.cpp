@@ -34,7 +34,7 @@ std::vector<std::optional<double>> by_class(JsonReading& reading, const Json& va
     }
   }
   if (!values[0] && !values[1]) {
-    reading.fail(place, "expected are \"vertical\", \"lateral\" or both");
+    reading.fail(place, "expected \"vertical\", \"lateral\" or both, found neither");
   }
   return values;
 }
@@ -77,9 +77,9 @@ void check_pair_lists_of(JsonReading& reading, const Connectors& connectors,
   for (const ConnectorParameter& parameter : connectors.parameters) {
     if (parameter.spread == Spread::kPairs && parameter.values.size() != pair_count) {
       reading.fail(place.at(parameter.key),
-                   fmt::format("found a list of {}, expected is a number for each of the {} pairs "
-                               "of directions of the lattice \"{}\"",
-                               parameter.values.size(), pair_count, lattice_name(lattice)));
+                   fmt::format("expected a number for each of the {} pairs of directions of the "
+                               "lattice \"{}\", found a list of {}",
+                               pair_count, lattice_name(lattice), parameter.values.size()));
     }
   }
 }
@@ -96,8 +96,8 @@ double read_not_negative(JsonReading& reading, const Json& value, const JsonPlac
 
 double read_positive(JsonReading& reading, const Json& value, const JsonPlace& place) {
   const double number = reading.number(value, place);
-  if (!(number > 0)) {
-    reading.refuse(value, place, "a positive number");
+  if (!(number >= kPositiveMin)) {
+    reading.refuse(value, place, fmt::format("a number of {} and more", kPositiveMin));
   }
   return number;
 }
@@ -134,6 +134,9 @@ KindEntry read_kind(JsonReading& reading, const std::string& name, const Json& v
     const JsonPlace here = place.at(key);
     if (key == "mass_kg") {
       kind.mass_kg = read_positive(reading, member, here);
+      if (*kind.mass_kg > kPositiveMax) {
+        reading.refuse(member, here, fmt::format("a number up to {}", kPositiveMax));
+      }
     } else if (std::ranges::find(kClassStrengthKeys, key) != kClassStrengthKeys.end()) {
       kind.connectors.parameters.push_back(
           {key, Spread::kAll, {read_positive(reading, member, here)}});

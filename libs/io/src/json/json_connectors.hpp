@@ -31,7 +31,7 @@ void check_pair_lists(JsonReading& reading);
 /// A number that is not negative, such as a coefficient of friction or a width.
 double read_not_negative(JsonReading& reading, const Json& value, const JsonPlace& place);
 
-/// A positive number.
+/// A number of kPositiveMin and more.
 double read_positive(JsonReading& reading, const Json& value, const JsonPlace& place);
 
 /// The index of a name, an enumerator; 0, and a failure, if it is none of them.

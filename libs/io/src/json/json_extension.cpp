@@ -3,6 +3,7 @@
 #include "json/json_extension.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <iterator>
@@ -23,8 +24,7 @@ std::array<double, 3> vector(JsonReading& reading, const Json& value, const Json
   const Json::array_t& array = reading.elements(value, place);
   std::array<double, 3> numbers{};
   if (array.size() != numbers.size()) {
-    reading.fail(place,
-                 fmt::format("found an array of {}, expected are three numbers", array.size()));
+    reading.fail(place, fmt::format("expected three numbers, found an array of {}", array.size()));
     return numbers;
   }
   for (std::size_t i = 0; i < numbers.size(); ++i) {
@@ -71,8 +71,8 @@ std::vector<model::CellPair> pairs(JsonReading& reading, const Json& value,
     if (ends.size() == 2) {
       list.push_back({ends[0], ends[1]});
     } else {
-      reading.fail(here, fmt::format("found {}, expected are the two of a connection",
-                                     host::counted(ends.size(), "cell")));
+      reading.fail(here,
+                   fmt::format("expected the two cells of a connection, found {}", ends.size()));
     }
   });
   return list;
@@ -109,9 +109,8 @@ void read_gravity(JsonReading& reading, const Json& value, const JsonPlace& plac
   }
   if (gravity[0] == 0 && gravity[1] == 0 && gravity[2] < 0) {
     document.material.gravity_m_s2 = -gravity[2];
-    const auto* const parameter =
-        std::ranges::find(model::kMaterialParameters, std::string_view("gravity_m_s2"),
-                          &model::MaterialParameter::key);
+    const auto* const parameter = std::ranges::find(model::kMaterialParameters, "gravity_m_s2",
+                                                    &model::MaterialParameter::key);
     if (const auto fault = model::find_fault(*parameter, -gravity[2])) {
       reading.fail(place, "the size of " + *fault);
     }
@@ -161,7 +160,7 @@ ColoredObstacle obstacle(JsonReading& reading, const Json& value, const JsonPlac
   const bool is_box = value.is_object() && value.contains("from") && value.contains("to");
   const bool has_corner = value.is_object() && (value.contains("from") || value.contains("to"));
   if (is_list ? has_corner || found.cells.empty() : !is_box) {
-    reading.fail(place, "expected are either \"from\" and \"to\", or \"cells\" with at least one");
+    reading.fail(place, "expected either \"from\" and \"to\", or \"cells\" with at least one");
   }
   if (found.to.x < found.from.x || found.to.y < found.from.y || found.to.z < found.from.z) {
     reading.fail(place, "no coordinate of \"to\" may be below that of \"from\"");
@@ -196,6 +195,9 @@ model::Payload payload(JsonReading& reading, const Json& value, const JsonPlace&
     } else {
       reading.note_unknown_key(here, kLoadKeys);
     }
+  }
+  if (value.is_object() && !value.contains("force_n") && !value.contains("torque_nmm")) {
+    reading.fail(place, "expected \"force_n\", \"torque_nmm\" or both, found neither");
   }
   return found;
 }
@@ -241,6 +243,10 @@ model::Step plan_step(JsonReading& reading, const Json& value, const JsonPlace& 
       reading.note_unknown_key(here, kStepKeys);
     }
   }
+  if (step == model::Step{}) {
+    reading.fail(place, fmt::format("expected an entry in at least one of \"{}\", found none",
+                                    fmt::join(kStepKeys, "\", \"")));
+  }
   return step;
 }
 
@@ -285,14 +291,33 @@ void read_own_parameter(JsonReading& reading, std::string_view key, const Json& 
   }
 }
 
+namespace {
+
+/// In the words of a file for VisibleSim: attributes of blocks, or a pointer into <extension>.
+std::string place_in_xml(const Document& document, const std::string& pointer) {
+  for (const OwnParameters& own : document.extension.own) {
+    if (pointer == own_place(own) + "/kind") {
+      const bool is_module = own.step == 0;
+      const Cell& cell = is_module ? document.modules[own.module].cell
+                                   : document.steps[own.step - 1][own.module].cell;
+      return fmt::format("{} of <{}> at {}", kOwnKindAttribute, is_module ? "block" : "cell",
+                         model::text(cell));
+    }
+  }
+  return fmt::format("{} in <{}>", pointer, kExtensionElement);
+}
+
+}  // namespace
+
 void read_extension_text(Reading& reading, std::string_view text, const Reading::Where& where) {
   JsonReading json;
   json.allows_unknown = reading.allows_unknown;
   json.document.material = reading.document.material;
-  json.document.extension = std::move(reading.document.extension);
+  json.document.extension = reading.document.extension;
   const auto root = parse_json(text);
   if (!root) {
-    reading.fail({root.error().code, root.error().message, where()});
+    reading.fail({root.error().code,
+                  fmt::format("in <{}>: {}", kExtensionElement, root.error().message), where()});
     return;
   }
   const JsonPlace top;
@@ -327,7 +352,9 @@ void read_extension_text(Reading& reading, std::string_view text, const Reading:
     }
   } else {
     reading.fail({read.error().code,
-                  fmt::format("{}: {}", read.error().where, read.error().message), where()});
+                  fmt::format("{}: {}", place_in_xml(reading.document, read.error().where),
+                              read.error().message),
+                  where()});
   }
 }
 

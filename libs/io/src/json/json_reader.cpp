@@ -172,6 +172,9 @@ void JsonReader::read_member(const std::string& key, const Json& value, const Js
     const Json::array_t& steps = reading_.elements(value, place);
     for (std::size_t i = 0; i < steps.size() && !reading_.has_failed(); ++i) {
       later_steps_.push_back(entries<PlannedEntry>(steps[i], place.at(i), i + 2));
+      if (later_steps_.back().empty()) {
+        reading_.refuse(steps[i], place.at(i), "an array of at least one cell");
+      }
     }
   } else if (key == "known_answer") {
     read_known_answer(value, place);
@@ -292,7 +295,7 @@ std::vector<Element> JsonReader::targets(const Json& value, const JsonPlace& pla
     const std::string* const format = find_attribute(element.attributes, "format");
     if (element.name != "target" || (format != nullptr && *format == "grid")) {
       reading_.fail(place,
-                    "expected are elements \"target\"; steps of format \"grid\" belong in "
+                    "expected elements \"target\"; steps of format \"grid\" belong in "
                     "\"planned\" and \"later_steps\"");
     }
   }

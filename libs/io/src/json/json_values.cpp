@@ -61,7 +61,7 @@ void JsonReading::fail_missing(const JsonPlace& object, std::string_view key,
 }
 
 void JsonReading::refuse(const Json& value, const JsonPlace& place, std::string_view expected) {
-  fail(place, fmt::format("found {}, expected is {}", describe(value), expected));
+  fail(place, fmt::format("expected {}, found {}", expected, describe(value)));
 }
 
 void JsonReading::note_unknown_key(const JsonPlace& place, Names known) {
@@ -119,7 +119,7 @@ std::array<std::int32_t, 3> JsonReading::triple(const Json& value, const JsonPla
   const Json::array_t& array = elements(value, place);
   std::array<std::int32_t, 3> triple{};
   if (array.size() != triple.size()) {
-    fail(place, fmt::format("found an array of {}, expected are three integers", array.size()));
+    fail(place, fmt::format("expected three integers, found an array of {}", array.size()));
     return triple;
   }
   for (std::size_t i = 0; i < triple.size(); ++i) {

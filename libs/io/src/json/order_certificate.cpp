@@ -48,7 +48,7 @@ class CertificateReader {
  private:
   void fail(const std::string& key, const std::string& expected) {
     if (!error_) {
-      error_ = {base::ErrorCode::kBadInput, "expected is " + expected, "/" + key};
+      error_ = {base::ErrorCode::kBadInput, "expected " + expected, "/" + key};
     }
   }
 
@@ -254,7 +254,7 @@ base::Result<model::RobotSpec> order_target(const Document& document) {
     return base::Error{base::ErrorCode::kBadInput,
                        "the target has steps of its own: an order is sought for modules that exist "
                        "or are planned at once, without \"steps\" and \"later_steps\"",
-                       document.extension.plan.empty() ? "/later_steps" : "/steps"};
+                       step_list(document)};
   }
   auto spec = make_spec(document);
   if (spec) {

@@ -73,16 +73,12 @@ void apply(const Connectors& connectors, const base::Lattice& lattice, model::Mo
   }
 }
 
-// What model::Robot allows; beyond it, products with other numbers leave the range of double.
-constexpr double kNumberMin = 1e-12;
-constexpr double kNumberMax = 1e12;
-
 std::optional<base::Error> find_fault(const Connectors& connectors, const JsonPlace& place) {
   for (const ConnectorParameter& parameter : connectors.parameters) {
     for (const std::optional<double>& value : parameter.values) {
-      if (!(value.value_or(1) >= kNumberMin)) {
+      if (!(value.value_or(1) >= kPositiveMin)) {
         return base::Error{base::ErrorCode::kBadInput,
-                           fmt::format("found {}, allowed is {} and more", *value, kNumberMin),
+                           fmt::format("found {}, allowed is {} and more", *value, kPositiveMin),
                            place.at(parameter.key).pointer()};
       }
     }
@@ -125,9 +121,9 @@ std::optional<base::Error> find_fault(const Document& document) {
   for (const KindEntry& kind : extension.kinds) {
     const JsonPlace place = kinds.at(kind.name);
     const double mass = kind.mass_kg.value_or(1);
-    if (!fault && !(mass >= kNumberMin && mass <= kNumberMax)) {
+    if (!fault && !(mass >= kPositiveMin && mass <= kPositiveMax)) {
       fault = {base::ErrorCode::kBadInput,
-               fmt::format("found {}, allowed is {} to {}", mass, kNumberMin, kNumberMax),
+               fmt::format("found {}, allowed is {} to {}", mass, kPositiveMin, kPositiveMax),
                place.at("mass_kg").pointer()};
     }
     fault = fault ? fault : find_fault(kind.connectors, place);
@@ -333,10 +329,23 @@ std::size_t step_count(const Document& document) {
 
 std::string step_pointer(const Document& document, std::size_t step) {
   const std::size_t index = step + first_step(document);
+  const bool is_xml = document.origin.format == Format::kVisibleSimXml;
   if (index >= document.steps.size()) {
-    return fmt::format("/steps/{}", index - document.steps.size());
+    return fmt::format("/steps/{}{}", index - document.steps.size(),
+                       is_xml ? fmt::format(" in <{}>", kExtensionElement) : "");
+  }
+  if (is_xml) {
+    return fmt::format("<target format=\"grid\">, number {}", index + 1);
   }
   return index == 0 ? "/planned" : fmt::format("/later_steps/{}", index - 1);
+}
+
+std::string step_list(const Document& document) {
+  if (document.origin.format == Format::kVisibleSimXml) {
+    return document.extension.plan.empty() ? "<targetList>"
+                                           : fmt::format("/steps in <{}>", kExtensionElement);
+  }
+  return document.extension.plan.empty() && document.steps.size() > 1 ? "/later_steps" : "/steps";
 }
 
 base::Result<Sequence> make_sequence(const Document& document) {

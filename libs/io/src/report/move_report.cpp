@@ -105,7 +105,7 @@ std::string proof_words(const plan::MoveCertificate& certificate) {
 
 base::Error no_certificate(const char* expected, const char* where) {
   return {.code = base::ErrorCode::kBadInput,
-          .message = fmt::format("expected is {}, as holdfast move --json writes it", expected),
+          .message = fmt::format("expected {}, as holdfast move --json writes it", expected),
           .where = where};
 }
 

@@ -65,8 +65,7 @@ void read_extension(XmlReading& reading, const pugi::xml_node& node) {
   for (const pugi::xml_node& child : node.children()) {
     text += child.value();
   }
-  read_extension_text(reading, text,
-                      [&] { return node ? reading.line(node) : std::string(kOwnElement); });
+  read_extension_text(reading, text, [&] { return node ? reading.line(node) : std::string(); });
 }
 
 /// <holdfast>: what our writer adds to the file.
@@ -81,7 +80,7 @@ void read_own_element(XmlReading& reading, const pugi::xml_node& node) {
   document.name = node.attribute("name").value();
   document.description = node.attribute("description").value();
   for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
-    const auto attribute = node.attribute(parameter.key);
+    const auto attribute = node.attribute(std::string(parameter.key).c_str());
     if (attribute && parameter.visiblesim == nullptr) {
       document.material.*parameter.value = reading.number(node, attribute);
     }
@@ -99,11 +98,18 @@ void read_own_element(XmlReading& reading, const pugi::xml_node& node) {
 
 void read_targets(XmlReading& reading, const pugi::xml_node& list) {
   reading.expect_attributes(list, {});
+  pugi::xml_node without_cells;
   for (const pugi::xml_node& child : list.children()) {
     if (child.name() != std::string_view("target")) {
       reading.warn_of_unknown_child(child, kTargetListElements);
     } else if (child.attribute("format").value() == std::string_view("grid")) {
-      reading.document.steps.push_back(read_grid_target(reading, child));
+      std::vector<Step>& steps = reading.document.steps;
+      steps.push_back(read_grid_target(reading, child));
+      if (!steps.back().empty() && without_cells) {
+        reading.fail(without_cells,
+                     "expected cells in <target> before another one with cells, found none");
+      }
+      without_cells = steps.size() > 1 && steps.back().empty() ? child : without_cells;
     } else {
       reading.document.targets.push_back(reading.element(child));
     }
@@ -210,8 +216,8 @@ void expect_possible_numbers(XmlReading& reading, const pugi::xml_node& paramete
     }
     const bool is_simulated = parameter.visiblesim != nullptr;
     const pugi::xml_node node = is_simulated ? parameters : own;
-    const char* const name = is_simulated ? parameter.visiblesim : parameter.key;
-    const bool is_said = static_cast<bool>(node.attribute(name));
+    const std::string name(is_simulated ? parameter.visiblesim : parameter.key);
+    const bool is_said = static_cast<bool>(node.attribute(name.c_str()));
     reading.fail(is_said ? node : parameters,
                  fmt::format("{} of <{}>{} is {}, allowed is {} to {}", name, node.name(),
                              is_said ? "" : ", which follows from globalL,", value,
@@ -229,7 +235,7 @@ void read_roots(XmlReading& reading, const pugi::xml_node& tree, const ReadOptio
   const pugi::xml_node world = only_child(reading, tree, "world");
   if (!world) {
     reading.fail({base::ErrorCode::kBadInput,
-                  "no element <world>, expected is a VisibleSim configuration", ""});
+                  "expected a VisibleSim configuration, found no element <world>", ""});
     return;
   }
   if (!parameters && options.robot.empty() && !world.child(kOwnElement).attribute("robot")) {
@@ -253,6 +259,7 @@ base::Result<ReadDocument> read_visiblesim(std::string_view text, const ReadOpti
     return *std::move(fault);
   }
   XmlReading reading(text);
+  reading.document.origin.format = Format::kVisibleSimXml;
   pugi::xml_document tree;
   reading.allows_unknown = options.allow_unknown;
   reading.parse(tree);

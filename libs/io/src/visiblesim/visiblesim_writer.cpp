@@ -235,7 +235,7 @@ void add_own_element(pugi::xml_node world, const Document& document, const base:
   for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
     const double value = document.material.*parameter.value;
     if (parameter.visiblesim == nullptr && value != defaults.*parameter.value) {
-      add(node, parameter.key, value);
+      add(node, std::string(parameter.key).c_str(), value);
     }
   }
   add_if_any(node, "robot", document.extension.robot);

@@ -93,7 +93,8 @@ class MoveFinder {
   }
 
   /// Whether the way to a cell about a neighbour is that of a ball or disc. Prisms slide up, down
-  /// and over each other, and turn like discs in their layer.
+  /// and over each other. In their layer they come through the places of a disc that rolls about
+  /// the same carrier, a third of a turn about a corner from one to the next.
   bool rolls(const Cell& to, const Cell& carrier) const {
     return lattice_ != base::kHexagonalPrism || (to.z == axial_.z && carrier.z == axial_.z);
   }
@@ -123,6 +124,15 @@ class MoveFinder {
            arc.lowest() > base::node_place(lattice_, {0, 0, *rule_.floor_z})[2] - kTouching;
   }
 
+  /// Whether the corner of a prism that turns in its layer sweeps somebody beyond the carrier's
+  /// neighbour in a direction: its outermost corner is 2 / sqrt(3) pitches from the one that it
+  /// turns about, so it reaches into the cells behind each place that it comes through.
+  bool is_swept_by_corner(const RollingArc& arc, const Cell& carrier, const Cell& away) const {
+    const Cell near = sum(carrier, away);
+    return lattice_ == base::kHexagonalPrism && away.z == 0 && is_taken(sum(near, away)) &&
+           arc.sweeps(base::place_of<double>(lattice_, near));
+  }
+
   /// Whether somebody within two steps of a carrier is in the way; further away nobody is.
   bool is_barred(const RollingArc& arc, const Cell& carrier) const {
     const auto bars = [&](const Cell& axial) {
@@ -131,9 +141,9 @@ class MoveFinder {
     };
     return std::ranges::any_of(steps(), [&](const Cell& first) {
       const Cell near = sum(carrier, first);
-      return bars(near) || std::ranges::any_of(steps(), [&](const Cell& second) {
-               return bars(sum(near, second));
-             });
+      return bars(near) || is_swept_by_corner(arc, carrier, first) ||
+             std::ranges::any_of(steps(),
+                                 [&](const Cell& second) { return bars(sum(near, second)); });
     });
   }
 

@@ -49,6 +49,16 @@ struct KnownAnswer {
   friend bool operator==(const KnownAnswer&, const KnownAnswer&) = default;
 };
 
+enum class Format : std::uint8_t { kVisibleSimXml, kJson, kBinary };
+
+/// What a document was read from, in whose words places in it are named. It says nothing of the
+/// structure, so any two are equal.
+struct Origin {
+  Format format = Format::kJson;
+
+  friend bool operator==(const Origin& /*a*/, const Origin& /*b*/) { return true; }
+};
+
 struct Document {
   std::string name;         ///< May be empty.
   std::string description;  ///< May be empty.
@@ -58,6 +68,7 @@ struct Document {
   std::vector<Step> steps;  ///< The first one is the planned step that is checked.
   std::optional<KnownAnswer> known_answer;
   Extension extension;  ///< What only version 2 of the JSON format can say.
+  Origin origin;
 
   // VisibleSim's own, without meaning for mechanics.
   Attributes parameters;         ///< Of <parameters>: nofIterations, preconditioner, globalBeta...
@@ -74,8 +85,6 @@ struct ReadDocument {
   Document document;
   std::vector<std::string> warnings;
 };
-
-enum class Format : std::uint8_t { kVisibleSimXml, kJson, kBinary };
 
 /// The limits of what is read, against files that are not what they seem. Nesting is that of XML
 /// elements, and of JSON objects and arrays.
@@ -149,8 +158,12 @@ std::size_t first_step(const Document& document);
 /// The number of steps of make_sequence().
 std::size_t step_count(const Document& document);
 
-/// Where a step of make_sequence(), by its number, stands in the document: a JSON pointer.
+/// Where a step of make_sequence(), by its number, stands in the file: a JSON pointer, or the
+/// element of VisibleSim XML.
 std::string step_pointer(const Document& document, std::size_t step);
+
+/// Where the file lists steps beyond the first, or would list them.
+std::string step_list(const Document& document);
 
 /// Errors: as of make_spec().
 base::Result<Sequence> make_sequence(const Document& document);

@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/mechanics/beam.hpp"
@@ -34,7 +35,7 @@ struct Material {
 
 /// What files, forms and messages have to know of one number of a material.
 struct MaterialParameter {
-  const char* key;         ///< In holdfast JSON, with the unit.
+  std::string_view key;    ///< In holdfast JSON, with the unit.
   const char* visiblesim;  ///< Attribute of VisibleSim's <parameters>; nullptr: it has no word.
   double Material::*value;
   const char* label;  ///< For people.
