@@ -13,6 +13,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <string_view>
 
 #include "document_support.hpp"
 
@@ -35,7 +36,7 @@ double value_for(const MaterialParameter& parameter) {
 }
 
 TEST(MaterialParameters, have_names_of_their_own) {
-  std::set<std::string> keys;
+  std::set<std::string_view> keys;
   std::set<std::string> labels;
   for (const MaterialParameter& parameter : kMaterialParameters) {
     EXPECT_TRUE(keys.insert(parameter.key).second) << parameter.key;

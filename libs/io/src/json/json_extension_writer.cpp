@@ -74,7 +74,7 @@ std::string move_text(const model::Move& move) {
   return object(members);
 }
 
-std::string step_text(const model::Step& step) {
+std::string step_object(const model::Step& step) {
   Items members;
   const auto add = [&](std::string_view key, const auto& list, const auto& to_text) {
     if (!list.empty()) {
@@ -166,7 +166,7 @@ void add_obstacle_members(Items& members, const Extension& extension) {
 
 void add_plan_members(Items& members, const Extension& extension) {
   add_list(members, "loads", extension.payloads, payload_text);
-  add_list(members, "steps", extension.plan, step_text);
+  add_list(members, "steps", extension.plan, step_object);
 }
 
 Items material_extension_members(const Extension& extension) {

@@ -38,7 +38,7 @@ mechanics::BeamSection<DoubleDouble> precise_section(const model::Material& mate
           .torsion = section.torsion};
 }
 
-DoubleDouble dot(const std::vector<PreciseVec>& a, const std::vector<PreciseVec>& b) {
+DoubleDouble inner_product(const std::vector<PreciseVec>& a, const std::vector<PreciseVec>& b) {
   DoubleDouble sum;
   for (std::size_t i = 0; i < a.size(); ++i) {
     sum += base::dot(a[i], b[i]);
@@ -81,7 +81,7 @@ bool PreciseRefinement::run(const std::vector<Vec>& displacement, const Solve& s
     std::vector<Vec> correction = all_converted<double>(left);
     solve(correction);
     Direction next = conjugate(all_converted<DoubleDouble>(correction));
-    const DoubleDouble length = dot(next.p, left) / next.curvature;
+    const DoubleDouble length = inner_product(next.p, left) / next.curvature;
     if (!std::isfinite(length.high)) {
       return false;
     }
@@ -103,11 +103,11 @@ PreciseRefinement::Direction PreciseRefinement::conjugate(PreciseVecs step) cons
   Direction next = {.p = std::move(step), .image = {}, .curvature = {}};
   next.image = product(next.p);
   for (const Direction& old : older_) {
-    const DoubleDouble turn = dot(old.p, next.image) / old.curvature;
+    const DoubleDouble turn = inner_product(old.p, next.image) / old.curvature;
     add(next.p, -turn, old.p);
     add(next.image, -turn, old.image);
   }
-  next.curvature = dot(next.p, next.image);
+  next.curvature = inner_product(next.p, next.image);
   return next;
 }
 
