@@ -133,7 +133,7 @@ int outcome_code(plan::OrderOutcome outcome) {
 /// answer's.
 int show(const OrderArguments& options, const io::OrderReport& report) {
   const plan::OrderOutcome outcome = report.result.order.outcome;
-  const bool has_way = outcome == plan::OrderOutcome::kFound || !report.result.order.steps.empty();
+  const bool has_way = !report.result.order.steps.empty();
   if (!options.steps.empty() && has_way) {
     const auto steps = io::order_steps(report.target, report.result.order, report.is_reversed);
     if (!steps) {

@@ -32,7 +32,7 @@ TEST(Json, is_read_whole) {
     "modules": [[0,0,-1], {"cell": [0,0,0], "fixed": true, "color": [1,2,3],
                            "attributes": {"id": "7", "centroid": "1"}}],
     "planned": [[1,0,0], {"cell": [0,1,0], "color": [4,5,6], "attributes": {"id": "8"}}],
-    "later_steps": [[[2,0,0]], []],
+    "later_steps": [[[2,0,0]]],
     "known_answer": {"verdict": "overload", "margin_mm": 1.5, "load_ratio_max": 2, "source": "me"},
     "visiblesim": {
       "parameters": {"nofIterations": "9"}, "world": {"windowSize": "1,1"},

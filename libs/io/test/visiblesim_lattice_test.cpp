@@ -310,7 +310,8 @@ TEST(VisibleSimExtension, holds_what_only_version_2_says) {
   bad("", "{", "no valid JSON");
   bad("", R"({"floor": {"friction": -1}})", "/floor/friction");
   bad("", R"({"material": {"lever_mm": [1]}})", "/material/lever_mm");
-  bad(R"(<block position="0,0,0" holdfastKind="battery"/>)", "{}", "/modules/0/kind");
+  bad(R"(<block position="0,0,0" holdfastKind="battery"/>)", "{}",
+      "holdfastKind of <block> at (0,0,0)");
   bad(R"(<block position="0,0,0" holdfastMass="0"/>)", "{}", "a positive number");
   refused(world("", R"(<block position="0,0,0" holdfastKind="battery"/>)"));
 }

@@ -173,7 +173,7 @@ void JsonReader::read_member(const std::string& key, const Json& value, const Js
     for (std::size_t i = 0; i < steps.size() && !reading_.has_failed(); ++i) {
       later_steps_.push_back(entries<PlannedEntry>(steps[i], place.at(i), i + 2));
       if (later_steps_.back().empty()) {
-        reading_.refuse(steps[i], place.at(i), "an array of at least one cell");
+        reading_.fail(place.at(i), "expected at least one cell, found an empty array");
       }
     }
   } else if (key == "known_answer") {

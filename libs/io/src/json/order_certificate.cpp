@@ -322,10 +322,6 @@ base::Result<Document> order_steps(const Document& target, const plan::Order& or
       (is_reversed ? step.detach : step.attach).push_back(cell);
     }
   }
-  if (plan.empty()) {
-    plan.emplace_back();
-    return document;
-  }
   if (is_reversed) {
     std::ranges::reverse(plan);
     return document;

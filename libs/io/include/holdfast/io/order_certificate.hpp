@@ -35,7 +35,6 @@ bool is_order_certificate(std::string_view text);
 /// A structure whose modules are those of the order's start and whose steps attach all others (or,
 /// of an order that was not found, those that were reached), or where the robot is taken apart one
 /// whose modules are the target's and whose steps detach them.
-/// Of an order without steps there is one, which does nothing, so that its state is judged.
 /// If one that is attached has a kind or a mass of its own the steps are planned ones and say so.
 base::Result<Document> order_steps(const Document& target, const plan::Order& order,
                                    bool is_reversed);

@@ -48,7 +48,7 @@ double add_terms(std::span<const NodeTerm> terms, const Six<Real>* p, std::vecto
 
 /// p . (A - K) z
 template <class Real>
-double product(std::span<const NodeTerm> terms, const Six<Real>* p, const Six<Real>* z) {
+double sum_of_products(std::span<const NodeTerm> terms, const Six<Real>* p, const Six<Real>* z) {
   double sum = 0;
   for (const NodeTerm& term : terms) {
     sum += base::dot(at_node(p, term), base::multiply(term.difference, at_node(z, term)));
@@ -132,7 +132,7 @@ bool ConjugateGradients<Real>::go_on_without_product(std::span<const NodeTerm> t
   q_ = std::vector<double>();
   hierarchy_.take_vectors();
   const double symmetric_part = turn_to_curvature(terms);
-  const double curvature = symmetric_part + product(terms, p_.data(), p_.data());
+  const double curvature = symmetric_part + sum_of_products(terms, p_.data(), p_.data());
   if (!is_curvature(curvature)) {
     return false;
   }
@@ -164,8 +164,8 @@ double ConjugateGradients<Real>::turn_to_curvature(std::span<const NodeTerm> ter
   }
   const double last = *std::exchange(curvature_, std::nullopt);
   const auto [own, change] = compare(preconditioned());
-  const double turn_by = -(change + product(terms, p_.data(), preconditioned().data())) /
-                         (last + product(terms, p_.data(), p_.data()));
+  const double turn_by = -(change + sum_of_products(terms, p_.data(), preconditioned().data())) /
+                         (last + sum_of_products(terms, p_.data(), p_.data()));
   turn_ = turn_by;
   turn();
   const double beside = turn_by + change / last;
