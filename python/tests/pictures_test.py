@@ -389,7 +389,7 @@ def test_a_film_has_a_frame_for_every_state(tmp_path):
         assert gif.n_frames == len(film)
     with pytest.raises(holdfast.Error, match=r'\.gif or \.html'):
         film.save(str(tmp_path / 'walk.avi'))
-    with pytest.raises(holdfast.Error, match='no reports'):
+    with pytest.raises(holdfast.Error, match='at least one report'):
         holdfast.animate([])
     pyplot.close('all')
 
