@@ -48,19 +48,20 @@ def tracked_files(root):
     return sorted(name for name in set(names) if (pathlib.Path(root) / name).is_file())
 
 
-def room_files(root):
-    files = [*root.glob('libs/*/CMakeLists.txt'), *root.glob('extras/*/CMakeLists.txt')]
-    return [file for file in files if 'holdfast_room(' in file.read_text()]
+def rooms(root):
+    return [*(root / 'libs').iterdir(), *(root / 'extras').iterdir()]
 
 
 def room_links(root):
     """Room -> rooms that it may include: itself and, transitively, what it links."""
     direct = {}
-    for file in room_files(root):
-        text = file.read_text()
+    for room in rooms(root):
+        text = (room / 'CMakeLists.txt').read_text()
+        if 'holdfast_room(' not in text:
+            continue
         room_call = text[text.index('holdfast_room('):]
         room_call = room_call[:room_call.index(')')]
-        direct[file.parent.name] = set(re.findall(r'holdfast::(\w+)', room_call))
+        direct[room.name] = set(re.findall(r'holdfast::(\w+)', room_call))
 
     def closure(room):
         return {room}.union(*(closure(other) for other in direct[room]))
@@ -150,7 +151,7 @@ def check_source(name, lines, links, exported):
 
 
 def check_room_readmes(root):
-    for room in [*(root / 'libs').iterdir(), *(root / 'extras').iterdir()]:
+    for room in rooms(root):
         readme = room / 'README.md'
         count = len(readme.read_text().splitlines()) if readme.is_file() else 0
         if not 10 <= count <= 40:
@@ -170,8 +171,8 @@ def folder_arrows(room):
 
 
 def check_folders(root):
-    for room in [*(root / 'libs').iterdir(), *(root / 'extras').iterdir()]:
-        for folder in [room / 'src', *(path for path in (room / 'src').rglob('*'))]:
+    for room in rooms(root):
+        for folder in [room / 'src', *(room / 'src').rglob('*')]:
             count = sum(path.suffix in SOURCE_SUFFIXES for path in folder.glob('*.[ch]pp'))
             allowed = HEAPS.get(room.name, FOLDER_FILES_MAX)
             if count > allowed:

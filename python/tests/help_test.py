@@ -60,8 +60,9 @@ def test_all_names_are_exported():
     assert public == set(holdfast.__all__)
 
 
-def run_mypy(*arguments):
-    done = subprocess.run([sys.executable, '-m', *arguments], capture_output=True, text=True)
+def run_mypy(*arguments, folder=None):
+    done = subprocess.run([sys.executable, '-m', *arguments], capture_output=True, text=True,
+                          cwd=folder)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
@@ -79,4 +80,4 @@ def test_stubs_are_those_of_the_extension(tmp_path):
     """But for how pybind11 makes classes."""
     (tmp_path / 'allowed').write_text(r'holdfast\._core\.[A-Z]\w+(\.__init__)?')
     run_mypy('mypy.stubtest', '--ignore-missing-stub', '--allowlist', str(tmp_path / 'allowed'),
-             '--ignore-unused-allowlist', 'holdfast._core')
+             '--ignore-unused-allowlist', 'holdfast._core', folder=tmp_path)

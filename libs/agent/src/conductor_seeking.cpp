@@ -119,6 +119,7 @@ Order Conductor::after_seek(const Setup& setup, const Report& report) {
   const bool has_few = report.count <= kFewFeet * kPressing && effort_.module_count <= kFewModules;
   if (is_first && is_by_one_foot_ && has_few && (is_exact() || !is_one_sweep())) {
     tries_each_state_ = true;
+    was_tried_ = false;
     return seek(0);
   }
   return is_first ? next_trial(setup) : try_states();
@@ -160,7 +161,7 @@ Order Conductor::after_given_state(const Report& report) {
 Order Conductor::next_state(const Setup& setup) {
   for (; foot_ < foot_count_ && !other_fails_; ++foot_) {
     std::uint32_t& code = seen_[kFewFeet + foot_];
-    trial_count_ = 0;
+    was_tried_ = false;
     if (++code < mechanics::ContactState::kCodeCount) {
       return seek(seen_[foot_] | code);
     }
@@ -227,8 +228,8 @@ Order Conductor::after_corners_otherwise(const Setup& setup, bool is_standing) {
 /// from where that has led, as feet that tilt are not solved for by a method that is certain to
 /// converge.
 Order Conductor::leave_trial(const Setup& setup, bool is_lost) {
-  if (tries_each_state_ && is_lost && trial_count_ == 0) {
-    trial_count_ = 1;
+  if (tries_each_state_ && is_lost && !was_tried_) {
+    was_tried_ = true;
     has_history_ = false;
     return try_states();
   }

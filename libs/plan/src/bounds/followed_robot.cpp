@@ -63,11 +63,7 @@ constexpr int kNear = 2;
 Direction direction_of(int index) { return static_cast<Direction>(index); }
 
 Vec6<double> difference_of(const Vec6<double>& a, const Vec6<double>& b) {
-  Vec6<double> sum = a;
-  for (std::size_t i = 0; i < 6; ++i) {
-    sum[i] -= b[i];
-  }
-  return sum;
+  return base::sum_of(a, -1.0, b);
 }
 
 double work_of(const std::vector<Vec6<double>>& loads, const std::vector<Vec6<double>>& u) {

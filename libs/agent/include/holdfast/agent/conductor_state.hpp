@@ -112,11 +112,12 @@ struct ConductorState {
   Seeking seeking_;
   std::uint32_t found_hash_;  ///< Of the states that were found first.
   std::uint32_t next_key_;    ///< Of the facet that is tried next; 0: all have been.
-  std::uint8_t trial_count_;  ///< With tries_each_state_: 1 if these states were tried before.
-  bool other_fails_;          ///< Another solution breaks a connection or falls, or may.
-  bool is_by_one_foot_;       ///< Those are sought that fall, hanging by one foot.
+  std::uint8_t trial_count_;
+  bool other_fails_;     ///< Another solution breaks a connection or falls, or may.
+  bool is_by_one_foot_;  ///< Those are sought that fall, hanging by one foot.
   /// All states of few feet are gone through; `seen_` has their keys, then their states.
   bool tries_each_state_;
+  bool was_tried_;  ///< The states that are tried were tried before, which did not converge.
   std::uint8_t foot_count_;
   std::uint8_t foot_;   ///< The next state is another one of this foot, or of one behind it.
   bool is_trial_lost_;  ///< A trial did not converge by the present method.
