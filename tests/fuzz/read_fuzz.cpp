@@ -17,7 +17,8 @@ namespace {
 /// Larger documents are legal, but slow under sanitizers: <blockBox> makes millions of few bytes.
 constexpr std::size_t kModuleCountFuzzed = 2000;
 
-constexpr std::size_t kLineBytesMax = 400;
+/// Room for all keys of the object that has most, and for what was found in their place.
+constexpr std::size_t kLineBytesMax = 600;
 
 void demand(bool is_true) {
   if (!is_true) {

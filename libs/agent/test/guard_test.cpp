@@ -11,6 +11,7 @@
 
 #include "holdfast/base/rng.hpp"
 #include "packet_script.hpp"
+#include "seeds.hpp"
 #include "tampered_network.hpp"
 
 namespace holdfast::agent {
@@ -297,6 +298,26 @@ TEST(Guard, whatever_a_line_carries_everybody_comes_to_a_verdict) {
     std::vector<std::uint8_t> bytes(40 + rng.below(200));
     for (std::uint8_t& byte : bytes) {
       byte = static_cast<std::uint8_t>(rng.below(4) == 0 ? rng.next() : rng.below(8));
+    }
+    PacketScript script(bytes);
+    EXPECT_TRUE(script.run()) << "seed " << seed;
+    changed += script.changed_count();
+  }
+  EXPECT_GT(changed, 100);
+}
+
+/// One byte of a few packets becomes another, mostly that of a real's exponent: displacements and
+/// forces of up to 1e38, with right checksums.
+TEST(Guard, whatever_size_a_line_gives_to_reals_everybody_comes_to_a_verdict) {
+  constexpr std::uint8_t kReplacesByte = 5;
+  int changed = 0;
+  for (std::uint64_t seed = 1; seed <= holdfast::test::campaign<std::uint64_t>(400); ++seed) {
+    base::Rng rng(seed);
+    const auto any = [&rng] { return static_cast<std::uint8_t>(rng.next()); };
+    std::vector<std::uint8_t> bytes{static_cast<std::uint8_t>(seed), any(), any(), any(), any()};
+    for (std::size_t record = 1 + rng.below(4); record > 0; --record) {
+      const auto exponent = static_cast<std::uint8_t>(0x50 + rng.below(0x30));
+      bytes.insert(bytes.end(), {kReplacesByte, any(), exponent, any()});
     }
     PacketScript script(bytes);
     EXPECT_TRUE(script.run()) << "seed " << seed;

@@ -401,5 +401,32 @@ TEST(Version2, says_what_is_wrong_and_what_is_allowed) {
                  "is unknown");
 }
 
+/// The longest message there is lists all keys of the object that has most; a longer one is no line
+/// that anybody reads, and the fuzz targets refuse it.
+TEST(Version2, names_a_long_key_that_nobody_knows_in_one_line) {
+  constexpr std::size_t kLineBytesMax = 600;
+  const std::string member = '"' + std::string(5000, 'q') + R"(": 0)";
+  const auto expect_line = [&](const std::string& text) {
+    SCOPED_TRACE(text.substr(0, 100));
+    const auto result = read_json(text);
+    ASSERT_FALSE(result);
+    EXPECT_NE(result.error().message.find("is unknown, expected "), std::string::npos);
+    EXPECT_LE(result.error().message.size(), kLineBytesMax);
+    EXPECT_LE(result.error().where.size(), kLineBytesMax);
+  };
+  expect_line(version_2(R"("modules": [], )" + member));
+  for (const char* object :
+       {R"("floor": {@})", R"("material": {@})", R"("material": {"lever_mm": {@}})",
+        R"("kinds": {"a": {@}})", R"("obstacles": [{@}])", R"("loads": [{"cell": [0,0,0], @}])",
+        R"("planned": [{"cell": [0,0,0], @}])", R"("steps": [{@}])",
+        R"("steps": [{"move": [{"from": [0,0,0], "to": [1,0,0], @}]}])"}) {
+    std::string text = object;
+    text.replace(text.find('@'), 1, member);
+    expect_line(version_2(R"("modules": [], )" + text));
+  }
+  std::string text = version_2(R"("modules": [{"cell": [0,0,0], @}])");
+  expect_line(text.replace(text.find('@'), 1, member));
+}
+
 }  // namespace
 }  // namespace holdfast::io
