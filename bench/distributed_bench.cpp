@@ -6,12 +6,13 @@
 //                                         quiet links; with 6 to PLANNED planned modules, 30 at
 //                                         most; METHOD firmware: those that firmware has
 //   distributed_bench general FROM TO [planned] [turned] [floor] [laws] [near] [friction] [held]
-//                             [LATTICE]
-//                                         cubes or others on walls and ceilings, with loads of
-//                                         their own; one to three modules planned; turned and
-//                                         mirrored; on a floor; connectors with laws of their own,
-//                                         all strengths so that the load ratio is within 1 % of 1;
-//                                         friction; held: all that exists is fixed, several planned
+//                             [v1 | v2] [LATTICE]
+//                                         on those lines, else in rounds; cubes or others on walls
+//                                         and ceilings, with loads of their own; one to three
+//                                         modules planned; turned and mirrored; on a floor;
+//                                         connectors with laws of their own, all strengths so that
+//                                         the load ratio is within 1 % of 1; friction; held: all
+//                                         that exists is fixed, several planned
 //   distributed_bench noisy FROM TO [METHOD [PLANNED]]   the same with loss, duplication, jitter,
 //   bit
 //                                         errors
@@ -98,9 +99,11 @@ struct Tally {
   int disagreeing = 0;
   int fallen_back = 0;  ///< To conjugate gradients, under the regularised law.
   double ratio_error = 0;
-  std::vector<double> sweeps;  ///< Of those that needed an equilibrium.
-  std::vector<double> rounds;  ///< And all rounds and kilobytes of these.
+  std::array<int, 6> methods{};  ///< The last ones.
+  std::vector<double> sweeps;    ///< Of those that needed an equilibrium.
+  std::vector<double> rounds;    ///< And all rounds and kilobytes of these.
   std::vector<double> kilobytes;
+  std::vector<double> seconds;  ///< To the last verdict, on lines that have a speed.
 
   void add(const test::Comparison& comparison, std::uint64_t seed) {
     ++count;
@@ -110,6 +113,7 @@ struct Tally {
     const agent::Effort& effort = comparison.result.effort;
     fallen_back += effort.method == Method::kConjugateGradients && !effort.is_unilateral ? 1 : 0;
     ratio_error = std::max(ratio_error, comparison.ratio_error());
+    ++methods[static_cast<std::size_t>(effort.method)];
     if (comparison.sweeps() > 0) {
       sweeps.push_back(comparison.sweeps());
       rounds.push_back(static_cast<double>(comparison.result.rounds));
@@ -122,14 +126,14 @@ struct Tally {
   }
 };
 
-void print_shares(const char* what, std::vector<double>& values) {
+void print_shares(const char* what, std::vector<double>& values, int digits = 0) {
   std::ranges::sort(values);
   const auto share = [&](double part) {
     const auto last = static_cast<double>(values.size()) - 1;
     return values.empty() ? 0 : values[static_cast<std::size_t>(part * last)];
   };
-  fmt::print("  {}: median {:.0f}, 90 % {:.0f}, 99 % {:.0f}, most {:.0f}\n", what, share(0.5),
-             share(0.9), share(0.99), share(1));
+  fmt::print("  {}: median {:.{}f}, 90 % {:.{}f}, 99 % {:.{}f}, most {:.{}f}\n", what, share(0.5),
+             digits, share(0.9), digits, share(0.99), digits, share(1), digits);
 }
 
 /// Random robots of a campaign.
@@ -185,6 +189,7 @@ struct Variety {
   bool has_friction = false;
   bool is_held = false;
   base::Lattice lattice = base::kCubic;
+  sim::LinkModel link = sim::unit();
 
   std::optional<model::Robot> make(std::uint64_t seed) const;
 };
@@ -222,7 +227,10 @@ int run_general(std::uint64_t from, std::uint64_t to, const Variety& variety) {
     if (!robot) {
       continue;  // Nothing else of it is held.
     }
-    const test::Comparison comparison = test::compare(*robot, {.seed = seed});
+    const test::Comparison comparison = test::compare(*robot, {.link = variety.link, .seed = seed});
+    if (const auto time = sim::seconds(variety.link, comparison.result.verdict_time)) {
+      tally.seconds.push_back(*time);
+    }
     other_limits += comparison.has_other_limit ? 1 : 0;
     other_gaps += comparison.has_other_gaps ? 1 : 0;
     if (comparison.exact == verdict::Verdict::kUndecided) {
@@ -240,7 +248,14 @@ int run_general(std::uint64_t from, std::uint64_t to, const Variety& variety) {
       "named {}, other gaps {}\n",
       tally.count, tally.wrong, wrong_safe, tally.undecided, tally.disagreeing, tally.ratio_error,
       both_undecided + decided_alone, both_undecided, safe_alone, other_limits, other_gaps);
-  print_shares("sweeps", tally.sweeps);
+  for (std::size_t method = 0; method < tally.methods.size(); ++method) {
+    fmt::print("  {}: {}\n", name(static_cast<Method>(method)), tally.methods[method]);
+  }
+  if (tally.seconds.empty()) {
+    print_shares("sweeps", tally.sweeps);
+  } else {
+    print_shares("seconds", tally.seconds, 1);
+  }
   return tally.wrong;
 }
 
@@ -538,6 +553,10 @@ int run_general(std::span<char*> arguments) {
         std::ranges::find(words, argument, &std::pair<std::string_view, bool Variety::*>::first);
     if (word != std::end(words)) {
       variety.*word->second = true;
+      continue;
+    }
+    if (const auto link = sim::find_link_model(argument)) {
+      variety.link = *link;
       continue;
     }
     const auto found = io::find_lattice(argument);

@@ -301,7 +301,7 @@ class Robot:
         from ._plans import next_places
         return next_places(self, threads=threads, memory=memory, bonded=bonded, progress=progress)
 
-    def simulate(self, *, link: str = 'v1', method: str = 'elimination', seed: int = 1,
+    def simulate(self, *, link: str = 'v1', method: str = 'auto', seed: int = 1,
                  noise: Optional[Mapping[str, float]] = None, events: Iterable[Any] = (),
                  progress: Progress = None) -> Run:
         """Lets the robot work its verdict out by itself, in simulation.
@@ -312,8 +312,9 @@ class Robot:
             ``v1`` and ``v2``: Blinky Blocks; ``catoms``: assumed, as nothing is published;
             ``unit``: rounds of a synchronous network.
         method
-            ``elimination``; ``fronts``, the same in few sweeps for robots with many loops and
-            modules with more memory; ``polynomial``, ``cg``, ``block-jacobi`` or ``jacobi``.
+            ``auto``: ``elimination`` on a level floor under weight alone, else ``fronts``, which
+            takes few sweeps for any loops and contact in modules with more memory;
+            ``polynomial``, ``cg``, ``block-jacobi`` or ``jacobi``.
         noise
             Probabilities ``loss``, ``duplication``, ``corruption``, ``reordering``; seconds
             ``jitter``.

@@ -144,13 +144,13 @@ std::shared_ptr<Run> simulate_robot(const SharedStructure& structure, const py::
   const std::string method = utf8_of(method_name, "method");
   const auto found_link = sim::find_link_model(link);
   const auto found_method = find_method(method);
-  if (!found_link || !found_method) {
+  if (!found_link || (!found_method && method != "auto")) {
     refuse(found_link ? "method" : "link", found_link ? method : link,
-           found_link ? "elimination, fronts, polynomial, cg, block-jacobi or jacobi"
+           found_link ? "auto, elimination, fronts, polynomial, cg, block-jacobi or jacobi"
                       : "v1, v2, catoms or unit");
   }
   options.link = *found_link;
-  options.method = *found_method;
+  options.method = found_method;
   options.seed = seed_of(seed);
   const double ticks =
       options.link.ticks_per_second > 0 ? static_cast<double>(options.link.ticks_per_second) : 1.0;

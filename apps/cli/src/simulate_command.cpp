@@ -23,7 +23,7 @@ namespace {
 struct SimulateArguments {
   io::ReadOptions reading;
   std::string file;
-  std::string method = "elimination";
+  std::string method = "auto";
   std::string link = "v1";
   std::uint64_t seed = 1;
   double loss = 0;
@@ -108,9 +108,9 @@ class SimulateRun {
   int run() {
     const auto link = sim::find_link_model(options_.link);
     const auto method = find_method(options_.method);
-    HOLDFAST_CHECK(link && method);
+    HOLDFAST_CHECK(link);
     simulation_.link = *link;
-    simulation_.method = *method;
+    simulation_.method = method;
     simulation_.seed = options_.seed;
     add_noise();
     if (complain_of_outputs({&options_.file, 1}, options_.outputs())) {
@@ -126,21 +126,11 @@ class SimulateRun {
     if (!structure) {
       return fail(structure.error(), options_.file);
     }
-    note_method(structure.value());
     return options_.changes.is_empty() ? run_with_faults(structure.value())
                                        : run_with_changes(structure.value());
   }
 
  private:
-  /// Modules make fronts of cubes on a floor only.
-  void note_method(const Structure& structure) const {
-    const auto beyond = model::find_beyond_paper(structure.robot);
-    if (simulation_.method == agent::Method::kFronts && beyond) {
-      const std::string note = fmt::format("{}: elimination instead of fronts", *beyond);
-      print_notes({&note, 1}, options_.file);
-    }
-  }
-
   /// Is anything asked for that happens to the robot on its way, or tells of it?
   bool has_happenings() const {
     const bool has_faults = std::ranges::any_of(
@@ -159,7 +149,6 @@ class SimulateRun {
     if (!structure) {
       return fail(structure.error(), options_.file);
     }
-    note_method(structure.value());
     const auto simulated = simulate_next(
         structure.value(),
         {.simulation = simulation_, .progress = [this](std::size_t done, std::size_t count) {
@@ -360,11 +349,12 @@ Command add_simulate(CLI::App& app) {
   command
       ->add_option(
           "--method", options->method,
-          "elimination (polynomial if the robot has many loops), fronts (the same in few sweeps, "
-          "modules with more memory), polynomial, cg, "
-          "block-jacobi, jacobi (the paper's)")
+          "auto (elimination on a level floor under weight alone, else fronts), elimination "
+          "(polynomial if the robot has many loops), fronts (any loops and contact in few sweeps, "
+          "modules with more memory), polynomial, cg, block-jacobi, jacobi (the paper's)")
       ->type_name("NAME")
-      ->check(CLI::IsMember({"elimination", "fronts", "polynomial", "cg", "block-jacobi", "jacobi"})
+      ->check(CLI::IsMember(
+                  {"auto", "elimination", "fronts", "polynomial", "cg", "block-jacobi", "jacobi"})
                   .description(""))
       ->capture_default_str();
   command

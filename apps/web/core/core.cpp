@@ -517,7 +517,10 @@ Reply stage_reply(std::span<const std::uint8_t> bytes) {
 /// are kept in thousands.
 sim::SimulationOptions simulation_options(const RequestHeader& header) {
   sim::SimulationOptions options;
-  options.method = static_cast<agent::Method>(header.options[0]);
+  const auto method = static_cast<agent::Method>(header.options[0]);
+  if (method != agent::Method::kElimination) {
+    options.method = method;  // Else the usual one of its kind of robot.
+  }
   options.link = link_of(header.options[1]);
   options.seed = static_cast<std::uint64_t>(header.options[2]);
   options.link.loss = header.options[3] / 1000.0;

@@ -21,7 +21,7 @@ struct LinkChoice {
 
 /// In the order in which they are offered, the first one chosen.
 constexpr MethodChoice kMethods[] = {
-    {agent::Method::kElimination, "elimination"},
+    {agent::Method::kElimination, "elimination or fronts"},
     {agent::Method::kPolynomial, "polynomial"},
     {agent::Method::kConjugateGradients, "conjugate gradients"},
     {agent::Method::kBlockJacobi, "block Jacobi"},

@@ -100,7 +100,7 @@ std::optional<std::string> Settings::take(char letter, std::string_view value) {
   }
   if (letter == 'M') {
     const auto method = find_method(value);
-    simulation.method = method.value_or(simulation.method);
+    simulation.method = method ? method : simulation.method;
     return method ? std::nullopt
                   : std::optional(wrong("elimination, polynomial, cg, block-jacobi or jacobi"));
   }

@@ -33,8 +33,9 @@ Order Conductor::begin(const Setup& setup, const base::Cell& root, std::uint32_t
   slack_bits_ = setup.slack_bits;
 #endif
   if constexpr (kHasAllMethods) {
-    may_have_fronts_ = lent.has_fronts && setup.method == Method::kFronts;
-    effort_.method = has_fronts() ? Method::kElimination : effort_.method;
+    const bool eliminates = setup.method == Method::kFronts || setup.method == Method::kElimination;
+    may_have_fronts_ = lent.has_fronts && eliminates;
+    effort_.method = eliminates ? Method::kElimination : effort_.method;
   }
   Order first = ask(Operation::kPlan);
   first.index = kNoPlanned;
@@ -337,25 +338,6 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
   return begin;
 }
 
-bool Conductor::needs_forces([[maybe_unused]] const Setup& setup) const {
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-  return false;
-#else
-  return is_uneven() || setup.has_friction;
-#endif
-}
-
-/// What load ratios must be good to before contact states are told; a single module has none.
-double Conductor::uneven_target() const {
-  const double size = kHasAllMethods && !(ratio_ > kNoLoadRatio) ? 0 : absolute(ratio_);
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-  return kUnevenTolerance * (1 + size);
-#else
-  const double share = is_exact() ? kEliminatedShare : 1;
-  return share * kUnevenTolerance * (1 + size) * static_cast<double>(1U << slack_bits_);
-#endif
-}
-
 Order Conductor::move(double length, double mix) {
   Order high = ask(Operation::kHigh);
   high.reals = {static_cast<float>(length), static_cast<float>(mix)};
@@ -394,7 +376,7 @@ Order Conductor::judge(const Setup& setup, const Report& report) {
   target_ = (is_consistent ? kRatioTolerance : kStateTolerance) * (1 + absolute(ratio_));
   if (needs_forces(setup)) {
     const bool is_halting = stagnation_count_ > kStagnationMax;
-    target_ = (is_halting ? kHalting : 1) * uneven_target();
+    target_ = is_halting ? halting_target() : uneven_target();
   }
   const bool is_told = error <= target_ || (stagnation_count_ > kStagnationMax && !is_uneven());
   if (!is_consistent && is_told) {
@@ -447,16 +429,24 @@ Order Conductor::give_up(const Setup& setup) {
     has_given_up_ = true;
     return begin_law(setup, true);
   }
-  const bool is_weakest = weak_springs_ == WeakSprings::kWeakest;
-  const bool may_topple = weak_springs_ == WeakSprings::kStiffer && !is_fixed_ && !is_second_;
-  if (is_uneven() && (is_weakest || may_topple)) {
-    weak_springs_ = is_weakest ? WeakSprings::kStiffer : WeakSprings::kToppling;
-    is_comparing_ = false;
+  if (stiffens_springs()) {
     return begin_law(setup, true);
   }
   const bool is_settled_but_close = error_ <= kRatioTolerance;
   return finish(Verdict::kUndecided,
                 is_settled_but_close ? Reason::kTooClose : Reason::kNotConverged);
+}
+
+/// The next stiffer weak springs of the unilateral law; false: there are none.
+bool Conductor::stiffens_springs() {
+  const bool is_weakest = weak_springs_ == WeakSprings::kWeakest;
+  const bool may_topple = weak_springs_ == WeakSprings::kStiffer && !is_fixed_ && !is_second_;
+  if (!is_uneven() || !(is_weakest || may_topple)) {
+    return false;
+  }
+  weak_springs_ = is_weakest ? WeakSprings::kStiffer : WeakSprings::kToppling;
+  is_comparing_ = false;
+  return true;
 }
 
 /// Those seen last are last. Where it is full the trials of one foot forget what was not seen for

@@ -86,10 +86,14 @@ bool Conductor::has_gradients(const Setup& setup) {
   return kHasAllMethods && !setup.only_one_sweep;
 }
 
+/// Fronts come first if they are asked for; with memory for them they come behind elimination and
+/// the polynomial, from which a robot goes on at its next change.
+///
 /// The unilateral law is for what takes its time: the method with fronts, Newton's method by the
 /// polynomial, or conjugate gradients, whose line search cannot fail.
 void Conductor::choose_one_sweep(const Setup& setup, bool is_unilateral) {
-  const bool has_memory = kHasAllMethods && may_have_fronts_;
+  const bool is_first = setup.method == Method::kFronts || has_fronts();
+  const bool has_memory = kHasAllMethods && may_have_fronts_ && is_first;
   if (is_unilateral) {
     take_safest_method(setup);
   } else if (has_many_loops_ || is_any_remote_) {
@@ -219,28 +223,10 @@ Order Conductor::after_iteration(const Setup& setup, const Report& report) {
     steer_newton(error);
   }
   const bool is_rough = is_uneven() && error > uneven_target();
-  if (has_jumped && !(is_rough && is_elimination)) {
-    ++effort_.contact_iterations;
-    if (is_back()) {
-      return next_trial(setup);
-    }
-    if (kKeepsAnswers && has_motion_ &&
-        effort_.contact_iterations >
-            (is_elimination ? kChangesFromKept : kIterationChangesFromKept)) {
-      return begin_law(setup, false);
-    }
-    // With fronts a facet that has changed is never asked again.
-    const bool is_cycle =
-        !has_fronts() && (was_accurate || is_newton_) && was_seen(report.states_hash());
-    if (is_cycle || effort_.contact_iterations > contact_iterations_max_) {
-      // Only exact iterations are certain to go round in circles: conjugate gradients try first.
-      return leave_one_sweep(setup, is_cycle && (is_elimination || is_newton_));
-    }
-    error_best_ = kUnbounded;
-    stagnation_count_ = 0;
-    predicted_ = kUnbounded;
-    holds_planned_ = is_any_remote_ && !has_clusters();
-    return is_elimination ? factor() : jumped_iteration(setup, report);
+  // With fronts, facets that seem to let go are kept, and the root finds their states.
+  const bool is_early = is_rough && is_elimination && (!has_fronts() || tries_each_state());
+  if (has_jumped && !is_early) {
+    return after_jump(setup, report, was_accurate);
   }
   target_ = needs_forces(setup) ? uneven_target() : kRatioTolerance * (1 + absolute(ratio_));
   const double distance = absolute(ratio_ - 1) / kDoubt;
@@ -252,7 +238,9 @@ Order Conductor::after_iteration(const Setup& setup, const Report& report) {
   stagnation_count_ =
       is_better ? std::uint8_t{0} : static_cast<std::uint8_t>(stagnation_count_ + 1);
   if (stagnation_count_ > stagnation_max()) {
-    return after_stagnation(setup);
+    const bool is_halting = has_fronts() && is_uneven() && !kept_states_;
+    return is_halting && error <= halting_target() ? settled(setup, &report)
+                                                   : after_stagnation(setup);
   }
   if (is_elimination) {
     predicted_ = error;
@@ -263,6 +251,56 @@ Order Conductor::after_iteration(const Setup& setup, const Report& report) {
     return leave_clusters(setup);
   }
   return has_changed_ ? restarted_iteration() : minimised_iteration(report);
+}
+
+/// Some facets want other states than those in use.
+Order Conductor::after_jump(const Setup& setup, const Report& report, bool was_accurate) {
+  const bool is_elimination = is_exact();
+  ++effort_.contact_iterations;
+  if (is_back()) {
+    return next_trial(setup);
+  }
+  if (kKeepsAnswers && has_motion_ &&
+      effort_.contact_iterations >
+          (is_elimination ? kChangesFromKept : kIterationChangesFromKept)) {
+    return begin_law(setup, false);
+  }
+  // With fronts a facet that has changed is never asked again.
+  const bool is_cycle =
+      !has_fronts() && (was_accurate || is_newton_) && was_seen(report.states_hash());
+  if (is_cycle || effort_.contact_iterations > contact_iterations_max_) {
+    // Only exact iterations are certain to go round in circles: conjugate gradients try first.
+    return leave_one_sweep(setup, is_cycle && (is_elimination || is_newton_));
+  }
+  error_best_ = kUnbounded;
+  stagnation_count_ = 0;
+  predicted_ = kUnbounded;
+  holds_planned_ = is_any_remote_ && !has_clusters();
+  return is_elimination ? factor() : jumped_iteration(setup, report);
+}
+
+bool Conductor::needs_forces([[maybe_unused]] const Setup& setup) const {
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+  return false;
+#else
+  return is_uneven() || setup.has_friction;
+#endif
+}
+
+/// What load ratios must be good to before contact states are told; a single module has none.
+double Conductor::uneven_target() const {
+  const double size = kHasAllMethods && !(ratio_ > kNoLoadRatio) ? 0 : absolute(ratio_);
+#ifdef HOLDFAST_AGENT_FLOOR_ONLY
+  return kUnevenTolerance * (1 + size);
+#else
+  const double share = is_exact() ? kEliminatedShare : 1;
+  return share * kUnevenTolerance * (1 + size) * static_cast<double>(1U << slack_bits_);
+#endif
+}
+
+/// Where that is not reached any more.
+double Conductor::halting_target() const {
+  return kHalting / (is_exact() ? kEliminatedShare : 1) * uneven_target();
 }
 
 /// The least energy, or the least residual, over the last two directions. The residual before was
@@ -349,14 +387,15 @@ Order Conductor::leave_clusters(const Setup& setup) {
 /// Fronts that find no room anywhere, or no contact state: the next safer method, the next law.
 Order Conductor::leave_fronts(const Setup& setup, bool has_no_room) {
   if (is_seeking()) {
-    return leave_trial(setup, false);
+    return leave_trial(setup, has_no_room);
   }
   if (has_no_room) {
     may_have_fronts_ = false;
     effort_.method = Method::kPolynomial;
     return begin_law(setup, is_unilateral_);
   }
-  return is_unilateral_ ? leave_one_sweep(setup, true) : begin_law(setup, true);
+  return is_unilateral_ || may_hang_by_foot() ? leave_one_sweep(setup, true)
+                                              : begin_law(setup, true);
 }
 
 /// All gives way to fronts where there is memory for them, else to Newton's method, and that to
@@ -364,6 +403,13 @@ Order Conductor::leave_fronts(const Setup& setup, bool has_no_room) {
 Order Conductor::leave_one_sweep(const Setup& setup, bool is_unilateral) {
   if (is_seeking()) {
     return leave_trial(setup, !is_unilateral);
+  }
+  if (has_fronts() && is_unilateral_ && stiffens_springs()) {
+    return begin_law(setup, true);
+  }
+  if (kHasAllMethods && may_have_fronts_ && !has_fronts() && !is_unilateral_) {
+    effort_.method = Method::kFronts;
+    return begin_law(setup, false);
   }
   if (is_unilateral && may_hang_by_foot()) {
     return begin_one_foot();

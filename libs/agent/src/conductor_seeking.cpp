@@ -90,6 +90,7 @@ Order Conductor::begin_seeking() {
 
 Order Conductor::begin_one_foot() {
   is_by_one_foot_ = true;
+  is_front_stale_ = true;
   return begin_seeking();
 }
 
@@ -137,7 +138,14 @@ Order Conductor::try_states() {
   begin_states();
   // From states that another trial has come to this one would go the same way.
   seen_count_ = is_by_one_foot_ ? seen_count : std::uint8_t{0};
-  return has_fronts() ? tree_iteration() : is_one_sweep() ? first_iteration() : move(0);
+  if (has_fronts() && is_by_one_foot_ && is_front_stale_) {
+    is_front_stale_ = false;
+    return factor();
+  }
+  if (has_fronts()) {
+    return tree_iteration();
+  }
+  return is_one_sweep() ? first_iteration() : move(0);
 }
 
 /// First facets tell their keys one by one and open, by orders of no state; then all are open.

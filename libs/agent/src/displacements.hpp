@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "facets.hpp"
 #include "holdfast/agent/order.hpp"
 #include "holdfast/agent/workspace.hpp"
 #include "methods.hpp"
@@ -80,7 +81,7 @@ void seek_facet(Facet& facet, bool is_doubtful, const base::Cell& cell, int inde
   }
   const std::uint32_t key = seek_key(cell, index);
   const bool is_tried = facet.is_doubtful && key == order.key();
-  facet.state = is_tried ? mechanics::ContactState{.pressed = !facet.found.pressed} : facet.found;
+  facet.state = is_tried ? other_state(facet.found) : facet.found;
   facet.wanted = facet.state;
   if (facet.is_doubtful) {
     offer_key(key, order, report);

@@ -111,6 +111,41 @@ bool look_up_states(Surroundings& node, const ContactSetting& contact, const Vec
   return has_changed;
 }
 
+Vec6<double> local_displacement(const Surroundings& node, const TouchingFacet& facet,
+                                const Vec6<double>& u) {
+  return to_local(node, facet, u);
+}
+
+/// Does every facet press all over, and is it held?
+bool hold_all_over(const Surroundings& node) {
+  bool hold = true;
+  for (const TouchingFacet& facet : facets_of(node)) {
+    hold = hold && facet.is_held && facet.state == kStuck;
+  }
+  return hold;
+}
+
+/// Is there one that would not press all over if it lost this share of its pressure?
+bool is_any_weak(const Surroundings& node, const ContactSetting& contact, const Vec6<double>& u,
+                 double share) {
+  bool is_any = false;
+  for (const TouchingFacet& facet : facets_of(node)) {
+    Vec6<double> trial = mechanics::trial_force(contact.facet, to_local(node, facet, u));
+    trial[2] *= 1 - share;
+    is_any =
+        is_any || (!facet.is_bonded && !(mechanics::contact_state(contact.facet, trial) == kStuck));
+  }
+  return is_any;
+}
+
+bool is_all_bonded(const Surroundings& node) {
+  bool is_all = true;
+  for (const TouchingFacet& facet : facets_of(node)) {
+    is_all = is_all && facet.is_bonded;
+  }
+  return is_all;
+}
+
 void take_states(Surroundings& node) {
   for (TouchingFacet& facet : facets_of(node)) {
     facet.state = facet.wanted;

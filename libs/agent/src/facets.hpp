@@ -11,10 +11,11 @@
 /// where it has surroundings, any on its faces, each in a state and a frame of its own.
 namespace holdfast::agent {
 
-/// The surroundings of a node, or null: it can touch a floor only.
-inline Surroundings* surroundings_of(const Node& node) {
+/// The surroundings of a node, or null: it can touch a floor only. `Foot`, here and below: a Node,
+/// or a KeptNode of a root with fronts.
+template <class Foot>
+Surroundings* surroundings_of([[maybe_unused]] const Foot& node) {
 #ifdef HOLDFAST_AGENT_FLOOR_ONLY
-  static_cast<void>(node);
   return nullptr;
 #else
   return node.surroundings;
@@ -38,6 +39,12 @@ base::Vec6<double> prescribed_force(const Surroundings& node, const ContactSetti
 bool look_up_states(Surroundings& node, const ContactSetting& contact, const base::Vec6<double>& u,
                     double tie);
 void take_states(Surroundings& node);
+base::Vec6<double> local_displacement(const Surroundings& node, const TouchingFacet& facet,
+                                      const base::Vec6<double>& u);
+bool hold_all_over(const Surroundings& node);
+bool is_any_weak(const Surroundings& node, const ContactSetting& contact,
+                 const base::Vec6<double>& u, double share);
+bool is_all_bonded(const Surroundings& node);
 void hold_facets(Surroundings& node, bool frees, Report& report);
 void seek_facets(Surroundings& node, const ContactSetting& contact, const base::Vec6<double>& u,
                  const base::Cell& cell, const Order& order, Report& report);
@@ -70,8 +77,9 @@ mechanics::SupportCorners support_corners(const Surroundings& node, const Contac
 
 /// The force of the facets of a node on the ground for the displacement u, in the states in use;
 /// linear in u.
-inline base::Vec6<double> facet_force(const Node& node, const ContactSetting& contact,
-                                      const base::Vec6<double>& u) {
+template <class Foot>
+base::Vec6<double> facet_force(const Foot& node, const ContactSetting& contact,
+                               const base::Vec6<double>& u) {
   const Surroundings* surroundings = surroundings_of(node);
   return surroundings != nullptr
              ? surrounded::facet_force(*surroundings, contact, u)
@@ -106,7 +114,8 @@ inline base::Vec6<double> facet_force_in_use(const Node& node, const ContactSett
 }
 
 /// The facets' tangent, of a node on the ground.
-inline base::Mat6<double> facet_tangent(const Node& node, const ContactSetting& contact) {
+template <class Foot>
+base::Mat6<double> facet_tangent(const Foot& node, const ContactSetting& contact) {
   const Surroundings* surroundings = surroundings_of(node);
   if (surroundings == nullptr) {
     return mechanics::contact_tangent(contact.facet, node.state, node.is_held);
@@ -125,6 +134,48 @@ inline base::Mat6<double> symmetric_facet_tangent(const Node& node, const Contac
   return base::matrix_of<double>([&](const base::Vec6<double>& u) {
     return surrounded::symmetric_product(*surroundings, contact, u);
   });
+}
+
+/// Calls visit(facet, index) for each facet of a node on the ground: 0 is its own on the floor, and
+/// those of surroundings count from 1.
+template <class Foot, class Visit>
+void visit_facets(Foot& node, Visit&& visit) {
+  Surroundings* surroundings = surroundings_of(node);
+  if (surroundings == nullptr) {
+    return visit(node, 0);
+  }
+  for (int i = 0; i < surroundings->facet_count; ++i) {
+    visit(surroundings->facets[static_cast<std::size_t>(i)], i + 1);
+  }
+}
+
+/// A displacement of the node in the frame of one of its facets.
+template <class Foot>
+base::Vec6<double> facet_displacement(const Foot& node, int index, const base::Vec6<double>& u) {
+  const Surroundings* surroundings = surroundings_of(node);
+  return surroundings == nullptr
+             ? u
+             : surrounded::local_displacement(
+                   *surroundings, surroundings->facets[static_cast<std::size_t>(index - 1)], u);
+}
+
+/// Takes over the states that the law prescribes for a displacement. True: some are others.
+template <class Foot>
+bool follow_states_at(Foot& node, const ContactSetting& contact, const base::Vec6<double>& u) {
+  if (Surroundings* surroundings = surroundings_of(node); surroundings != nullptr) {
+    const bool has_changed =
+        surrounded::look_up_states(*surroundings, contact, u, kPressureTieEliminated);
+    surrounded::take_states(*surroundings);
+    return has_changed;
+  }
+  const auto before = node.state;
+  node.state = mechanics::contact_state(contact.facet, mechanics::trial_force(contact.facet, u));
+  return !(node.state == before);
+}
+
+/// What a facet is tried in beside the state that was found.
+inline mechanics::ContactState other_state(const mechanics::ContactState& found) {
+  return {.pressed = !found.pressed};
 }
 
 /// Looks up the states that the law prescribes at u + t g. True: some are not those in use.

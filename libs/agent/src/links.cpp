@@ -44,7 +44,7 @@ void Links::lend([[maybe_unused]] MoreFaces* more) {
 }
 
 void Links::lend(std::uint8_t* queues) {
-  for (const Direction face : base::kDirections) {
+  for (const Direction face : directions(more())) {
     at(face).lend(queues + static_cast<std::ptrdiff_t>(face) * Link::kLentBytes);
   }
 }

@@ -8,8 +8,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <vector>
 
+#include "facets.hpp"
 #include "holdfast/agent/front_contact.hpp"
 #include "holdfast/base/rng.hpp"
 #include "test_setup.hpp"
@@ -24,7 +28,8 @@ using test::lopsided_beam;
 struct Store {
   std::vector<float> reals = std::vector<float>(10'000);
   std::vector<double> contact = std::vector<double>(contact_reals(24));
-  FrontMemory memory{.nodes = {}, .reals = reals, .kept = {}, .contact = contact, .queues = {}};
+  FrontMemory memory{
+      .nodes = {}, .reals = reals, .kept = {}, .contact = contact, .touching = {}, .queues = {}};
 };
 
 /// Four nodes in a ring, one more above the first, one fixed; nodes 1 and 3 are not complete.
@@ -120,6 +125,31 @@ TEST(Front, condenses_to_the_schur_complement) {
   EXPECT_EQ(front.element_left(index), 0);
 }
 
+/// In two parts: 2^-48, times as much; the second parts alone tell it from single precision.
+TEST(Front, condenses_to_twelve_digits_where_matrices_have_two_parts) {
+  Store store;
+  store.memory.has_low_parts = true;
+  auto nodes = ring();
+  Front front;
+  ASSERT_TRUE(front.make(nodes, store.memory));
+  const Dense dense = filled(front);
+  factor(front);
+  const Eigen::MatrixXd lower = dense.matrix.bottomLeftCorner(12, 18);
+  const Eigen::MatrixXd schur =
+      dense.matrix.bottomRightCorner(12, 12) -
+      lower * dense.matrix.topLeftCorner(18, 18).ldlt().solve(lower.transpose());
+  const double size = dense.matrix.diagonal().maxCoeff();
+  int index = 0;
+  double low_most = 0;
+  for (int i = 0; i < 12; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      EXPECT_NEAR(front.element(18 + i, 18 + j), schur(i, j), 1e-12 * size);
+      low_most = std::max(low_most, std::abs(double{front.element_left(index++, true)}));
+    }
+  }
+  EXPECT_GT(low_most, 1e-10 * size);
+}
+
 TEST(Front, finds_the_shifts_of_what_was_eliminated) {
   Store store;
   auto nodes = ring();
@@ -146,7 +176,8 @@ TEST(Front, says_so_if_there_is_no_room_or_nothing_holds_it) {
   auto nodes = ring();
   Front front;
   EXPECT_FALSE(front.make(nodes, store.memory));
-  store.memory = {.nodes = {}, .reals = store.reals, .kept = {}, .contact = {}, .queues = {}};
+  store.memory = {
+      .nodes = {}, .reals = store.reals, .kept = {}, .contact = {}, .touching = {}, .queues = {}};
   ASSERT_TRUE(front.make(nodes, store.memory));
   EXPECT_FALSE(front.factor_row(0));
 }
@@ -181,13 +212,17 @@ class Post {
     for (std::size_t i = 0; i < 6; ++i) {
       front_.load(6 + static_cast<int>(i)) = static_cast<float>(left[i]);
     }
-    FrontContact contact(facet_, front_, std::span(&kept_, 1), store_.contact);
+    kept_.force = mechanics::contact_force(
+        facet_, mechanics::contact_state(facet_, mechanics::trial_force(facet_, kept_.u)), true,
+        kept_.u);
+    const ContactSetting setting{.facet = facet_};
+    FrontContact contact(setting, front_, std::span(&kept_, 1), store_.contact);
     is_solved_ = contact.solve();
   }
 
   bool is_solved() const { return is_solved_; }
 
-  const KeptFacet& foot() const { return kept_; }
+  const KeptNode& foot() const { return kept_; }
 
   /// Does the state belong to the displacement, and is S d + F = h?
   void expect_equilibrium() const {
@@ -207,7 +242,7 @@ class Post {
       const auto at = static_cast<std::size_t>(i);
       left[at] = loads_[at] - force[at];
       for (int j = 0; j < 6; ++j) {
-        left[at] -= static_cast<double>(front_.element(6 + (i > j ? i : j), 6 + (i > j ? j : i))) *
+        left[at] -= front_.element(6 + (i > j ? i : j), 6 + (i > j ? j : i)) *
                     u[static_cast<std::size_t>(j)];
       }
     }
@@ -219,7 +254,7 @@ class Post {
   Front front_;
   mechanics::GroundFacet<double> facet_;
   base::Vec6<double> loads_{};
-  KeptFacet kept_{.u = {}, .state = {.pressed = true}};
+  KeptNode kept_{.u = {}, .state = {.pressed = true}};
   bool is_solved_ = false;
 };
 
@@ -264,6 +299,61 @@ TEST(FrontContact, a_robot_that_nothing_holds_yet_comes_down_under_the_unilatera
   stands.solve_from({});  // Once more, as shifts are in single precision.
   EXPECT_TRUE(stands.foot().state.pressed);
   stands.expect_equilibrium();
+}
+
+/// The post again, its lower module on the floor and before a wall, pushed and turned anyhow. What
+/// it comes to is an equilibrium whose states are those that the law prescribes, by both laws.
+TEST(FrontContact, a_node_may_touch_several_things) {
+  const auto beam = lopsided_beam();
+  int wall_count = 0;
+  int tilting_count = 0;
+  for (const auto law : {mechanics::ContactLaw::kRegularised, mechanics::ContactLaw::kUnilateral}) {
+    const ContactSetting setting{.facet = mechanics::ground_facet(beam, 40.0, 40.0, 1e-4, law)};
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+      SCOPED_TRACE(seed);
+      Store store;
+      std::vector<FrontNode> nodes(2);
+      nodes[0].is_kept = true;
+      nodes[1].cell = {0, 0, 1};
+      Front front;
+      ASSERT_TRUE(front.make(nodes, store.memory));
+      filled(front);
+      front.clear_loads();
+      base::Rng rng(seed);
+      for (int row = 0; row < 6; ++row) {
+        const double share = static_cast<double>(rng.below(1000)) / 1000 - 0.5;
+        front.load(row) = static_cast<float>(test::kWeight * (row < 3 ? share : 200 * share));
+      }
+      front.load(2) = front.load(8) = -static_cast<float>(test::kWeight);
+      factor(front);
+      const Environment environment;
+      Surroundings surroundings{.environment = &environment, .facet_count = 2};
+      surroundings.facets[0] = {.direction = Direction::kMinusZ, .state = {.pressed = true}};
+      surroundings.facets[1] = {.direction = Direction::kPlusX, .state = {.pressed = true}};
+      KeptNode kept{};
+      kept.surroundings = &surroundings;
+      FrontContact contact(setting, front, std::span(&kept, 1), store.contact);
+      if (!contact.solve()) {
+        EXPECT_EQ(law, mechanics::ContactLaw::kRegularised);
+        continue;
+      }
+      const std::array found = {surroundings.facets[0].state, surroundings.facets[1].state};
+      EXPECT_FALSE(follow_states_at(kept, setting, kept.u));
+      const base::Vec6<double> force = facet_force(kept, setting, kept.u);
+      for (int i = 0; i < 6; ++i) {
+        double left = static_cast<double>(front.load(6 + i)) - force[static_cast<std::size_t>(i)];
+        for (int j = 0; j < 6; ++j) {
+          left -= front.element(6 + std::max(i, j), 6 + std::min(i, j)) *
+                  kept.u[static_cast<std::size_t>(j)];
+        }
+        EXPECT_NEAR(left, 0, 1e-2);  // Of 60 N mm; shifts are in single precision.
+      }
+      wall_count += found[1].pressed ? 1 : 0;
+      tilting_count += found[0].tilt_x != 0 || found[0].tilt_y != 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(wall_count, 10);
+  EXPECT_GT(tilting_count, 10);
 }
 
 }  // namespace

@@ -41,6 +41,12 @@ bool has_noise(const LinkModel& link) {
          link.corruption > 0;
 }
 
+/// Have modules memory for fronts?
+bool lends_fronts(const model::Robot& robot, const SimulationOptions& options) {
+  return options.method ? options.method == agent::Method::kFronts
+                        : !options.only_one_sweep && needs_environment(robot, options.step_end);
+}
+
 /// Have modules to keep more planned modules than they have room for themselves, those of a step's
 /// end included?
 bool plans_many(const model::Robot& robot, const SimulationOptions& options) {
@@ -85,8 +91,7 @@ Engine::Engine(const model::Robot& robot, SimulationOptions options)
       noise_(options_.link),
       is_noisy_(has_noise(options_.link)),
       lent_(robot, robot.modules().size() - robot.planned_count(),
-            {.has_fronts = options_.method == agent::Method::kFronts &&
-                           !needs_environment(robot, options_.step_end),
+            {.has_fronts = lends_fronts(robot, options_),
              .has_stages = !options_.step.empty(),
              .judges_faces = options_.judges_faces,
              .keeps_changes = options_.deflates && setup_.keeps_answers,

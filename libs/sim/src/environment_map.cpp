@@ -333,7 +333,7 @@ LentStore::LentStore(const model::Robot& robot, std::size_t module_count, Needs 
     changes_.resize(module_count);
   }
   if (needs.has_fronts) {
-    fronts_ = std::make_unique<FrontStore>(module_count, needs.plans_many);
+    fronts_ = std::make_unique<FrontStore>(module_count, needs.plans_many, has_map);
   }
   if (has_map) {
     map_ = std::make_unique<EnvironmentMap>(robot);

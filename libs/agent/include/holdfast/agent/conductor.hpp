@@ -171,6 +171,7 @@ class Conductor : private ConductorState {
   Order after_stagnation(const Setup& setup);
   Order minimised_iteration(const Report& report);
   Order after_iteration(const Setup& setup, const Report& report);
+  Order after_jump(const Setup& setup, const Report& report, bool was_accurate);
   // conductor_deflation.cpp
   bool deflates() const;
   void end_deflation();
@@ -196,6 +197,7 @@ class Conductor : private ConductorState {
   Order judge(const Setup& setup, const Report& report);
   Order judge_regularised(const Setup& setup, const Report& report);
   Order give_up(const Setup& setup);
+  bool stiffens_springs();
   Order settled(const Setup& setup, const Report* last = nullptr);
   Order after_corners(const Setup& setup, const Report& report);
   Order after_hold(const Report& report);
@@ -204,6 +206,7 @@ class Conductor : private ConductorState {
   Order begin_unilateral(const Setup& setup);
   void note_facets(const Report& report);
   double uneven_target() const;
+  double halting_target() const;
   double unilateral_gamma() const;
 
   /// Are not only load ratios asked for, but the forces of facets?

@@ -119,9 +119,10 @@ struct ConductorState {
   bool tries_each_state_;
   bool was_tried_;  ///< The states that are tried were tried before, which did not converge.
   std::uint8_t foot_count_;
-  std::uint8_t foot_;   ///< The next state is another one of this foot, or of one behind it.
-  bool is_trial_lost_;  ///< A trial did not converge by the present method.
-  bool was_newton_;     ///< is_newton_ before.
+  std::uint8_t foot_;    ///< The next state is another one of this foot, or of one behind it.
+  bool is_front_stale_;  ///< Facets are tried that the root does not keep yet.
+  bool is_trial_lost_;   ///< A trial did not converge by the present method.
+  bool was_newton_;      ///< is_newton_ before.
   // Jacobi.
   std::uint16_t batch_;
   std::uint32_t check_at_;

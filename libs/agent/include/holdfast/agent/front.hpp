@@ -17,8 +17,8 @@
 /// its children. A beam is put in as soon as both its ends are in one front. A node whose beams are
 /// all in is *complete*: it is eliminated, and the rest goes up to the parent. So any number of
 /// loops may pass, and a planned module between others is a node like every other, in the front of
-/// its host. A facet that holds all over is put in with its node. The node of any other facet is
-/// *kept*: without its facet and not eliminated, up to the root, where contact is decided
+/// its host. Facets that hold all over are put in with their node. A node with any other facet is
+/// *kept*: without its facets and not eliminated, up to the root, where contact is decided
 /// (front_contact.hpp). So the matrix is symmetric and positive, and contact never spoils it.
 ///
 /// With A the front's matrix, its first n rows those of complete nodes, A = L L^t there, row by
@@ -26,7 +26,9 @@
 ///   L_ij = (A_ij - sum_{k<j} L_ik L_jk) / L_jj       j < n, j <= i
 ///   S_ij =  A_ij - sum_{k<n} L_ik L_jk               j >= n
 /// Sums are in double precision; what is stored and sent is single precision, and the iteration
-/// takes its rounding away.
+/// takes its rounding away. Away from a level floor a robot may hang on weak springs, and contact
+/// states follow from what single precision leaves of S: there a matrix is stored and sent in two
+/// parts, 48 bits in all.
 namespace holdfast::agent {
 
 /// A node in a front.
@@ -35,27 +37,33 @@ struct FrontNode {
   Faces missing = {};     ///< Faces whose beams are not in yet.
   Faces joined = {};      ///< Faces whose beams are put in here.
   bool is_fixed = false;  ///< Does not move: no rows.
-  bool is_kept = false;   ///< Its facet is the root's.
+  bool is_kept = false;   ///< Its facets are the root's.
   bool is_held = true;    ///< Of a kept facet, against slip and twist.
   bool was_released = false;
   bool is_doubtful = false;            ///< Of a kept facet, as Node has it; ...
   mechanics::ContactState state = {};  ///< ... in use ...
   mechanics::ContactState found = {};  ///< ... and when others were sought.
   base::Vec6<double> u = {};           ///< Of a kept one: its displacement.
+  /// A kept node with surroundings has so many facets, whose states are these (packed_state());
+  /// those above are void then.
+  std::uint8_t facet_count = 0;
+  std::array<std::uint16_t, kTouchingFacetsMax> facets = {};
 
   bool is_complete() const { return missing.is_empty() && !is_kept; }
 };
 
-/// What the root keeps of a kept facet from one iteration to the next.
-struct KeptFacet {
+/// What the root keeps of a kept node from one iteration to the next. As in a Node, the facet on
+/// the floor is its own, and with surroundings there are any facets, each with a state of its own.
+struct KeptNode {
   base::Vec6<double> u{};
+  base::Vec6<double> force{};  ///< Of its facets at u, when the loads that are here were found.
   mechanics::ContactState state;
   bool is_held = true;
-  bool was_held = true;  ///< When the loads that are here were found.
   bool was_released = false;
   mechanics::ContactState found = {};  ///< When others were sought (kSeek), ...
   bool is_doubtful = false;            ///< ... and whether another state leads elsewhere.
-  std::uint32_t key = 0;               ///< By which orders name it.
+  base::Cell cell = {};                ///< As seen from the root.
+  Surroundings* surroundings = nullptr;
 };
 
 /// What one module needs for its fronts. The caller owns it: whoever has no such memory has other
@@ -63,12 +71,14 @@ struct KeptFacet {
 struct FrontMemory {
   std::span<FrontNode> nodes;
   std::span<float> reals;
-  std::span<KeptFacet> kept;       ///< For the root: so many at most, ...
-  std::span<double> contact;       ///< ... and contact_reals() for them.
-  std::span<std::uint8_t> queues;  ///< For the six links, kLentBytes each.
+  std::span<KeptNode> kept;          ///< For the root: so many at most, ...
+  std::span<double> contact;         ///< ... contact_reals() for them, ...
+  std::span<Surroundings> touching;  ///< ... and, if there is more than a floor, as many.
+  std::span<std::uint8_t> queues;    ///< For the links of all faces, kLentBytes each.
   std::size_t nodes_used = 0;
   std::size_t reals_used = 0;
   std::size_t reals_most = 0;  ///< So far, for reports.
+  bool has_low_parts = false;  ///< Matrices are in two parts.
 
   void clear() { nodes_used = reals_used = 0; }
 
@@ -109,14 +119,13 @@ class Front {
   void add_block(int row, int column, const base::Mat6<double>& block);
 
   /// Adds one element; either triangle.
-  void add(int row, int column, float value) {
-    matrix_[row >= column ? at(row, column) : at(column, row)] += value;
-  }
+  void add(int row, int column, double value);
 
-  float element(int row, int column) const { return matrix_[at(row, column)]; }
+  double element(int row, int column) const { return value(at(row, column)); }
 
-  /// The `index`-th element of S, by rows of its lower triangle; zero behind the last one.
-  float element_left(int index) const;
+  /// The `index`-th element of S, by rows of its lower triangle, or what its first part leaves;
+  /// zero behind the last one.
+  float element_left(int index, bool is_low = false) const;
 
   /// Row `row` of L, then of S. False: not positive, nothing holds the robot.
   bool factor_row(int row);
@@ -142,7 +151,16 @@ class Front {
   double product(int row, int column, int count) const;
 
   std::span<FrontNode> nodes_;
+
+  double value(std::size_t place) const {
+    const auto high = static_cast<double>(matrix_[place]);
+    return low_.empty() ? high : high + static_cast<double>(low_[place]);
+  }
+
+  void set(std::size_t place, double value);
+
   std::span<float> matrix_;
+  std::span<float> low_;  ///< What matrix_ leaves; empty where it has no second part.
   std::span<float> loads_;
   std::span<float> shifts_;
   std::size_t complete_count_ = 0;

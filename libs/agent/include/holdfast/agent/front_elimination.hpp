@@ -21,10 +21,10 @@ namespace holdfast::agent {
 ///   kTreeIterate   with the order: shifts of the nodes that a child has sent; all move, exchange
 ///                  displacements and look up their contact states; with the reports: loads
 ///
-/// A facet that wants to let go or to tilt is kept from the next kFactor on, for the whole of the
-/// equilibrium. Where a front finds no room in a module, it and all above it have none, nobody
-/// moves, and the report says so (kNoRoom); likewise where the root finds no contact state
-/// (kNoState).
+/// A node with a facet that wants to let go or to tilt is kept from the next kFactor on, for the
+/// whole of the equilibrium. Where a front finds no room in a module, it and all above it have
+/// none, nobody moves, and the report says so (kNoRoom); likewise where the root finds no contact
+/// state (kNoState).
 class FrontElimination {
  public:
   bool begin(Workspace& ws, const Order& order, int piece);
@@ -61,17 +61,21 @@ class FrontElimination {
     kMove,
   };
 
-  /// What a child has sent: first its nodes, then the displacements of kept ones, then the matrix,
-  /// then loads. All of it is counted, even where there is no room to keep it.
+  /// What a child has sent: first its nodes, then the displacements of kept ones and the states of
+  /// their facets if they have surroundings, then the matrix, in one part or two, then loads. All
+  /// of it is counted, even where there is no room to keep it.
   struct Below {
     std::span<FrontNode> nodes;
     std::span<float> matrix;
+    std::span<float> low;  ///< Its second part, empty where it has none.
     std::span<float> loads;
     std::uint16_t node_count = 0;
     std::uint16_t nodes_here = 0;
     std::uint16_t moving_count = 0;  ///< Nodes that are not fixed.
     std::uint16_t kept_count = 0;
     std::uint16_t kept_here = 0;
+    std::uint16_t states_count = 0;  ///< Messages with states of facets.
+    std::uint16_t states_here = 0;
     int vectors_here = 0;  ///< Of the matrix.
     std::uint16_t loads_here = 0;
     bool is_known = false;  ///< A first message is here.
@@ -80,24 +84,31 @@ class FrontElimination {
 
   void begin_piece(Piece piece);
 
+  /// Of a matrix that is sent.
+  int matrix_parts() const { return memory_->has_low_parts ? 2 : 1; }
+
   // What comes from a child.
   void take_up(const Order& order, Direction face, std::span<const std::uint8_t> message);
   void take_first(Below& below, int label);
   void take_node(Below& below, const base::Vec6<float>& vector);
   static void take_kept(Below& below, const base::Vec6<float>& vector);
+  static void take_facets(Below& below, const base::Vec6<float>& vector);
   static void take_vector(std::span<float> into, std::size_t index,
                           const base::Vec6<float>& vector);
 
   void begin_law(Workspace& ws, const Order& order);
   void keep_weak(Workspace& ws);
   void hold_kept(const Order& order);
+  std::span<KeptNode> kept() const;
+  void seek(Workspace& ws, const Order& order, Report& sum);
   void seek_kept(const Workspace& ws, const Order& order, Report& sum);
 
   // The front.
   void factor();
   void assemble(Workspace& ws);
   bool make_front(Workspace& ws);
-  bool take_kept_facets(const Workspace& ws);
+  bool take_kept_nodes(const Workspace& ws);
+  bool take_surroundings(const Workspace& ws, const FrontNode& node, KeptNode& kept);
   int row_at(const base::Cell& cell) const;
   void add_below(const Below& below);
   void add_beams(const Workspace& ws);
@@ -117,15 +128,16 @@ class FrontElimination {
 
   FrontMemory* memory_ = nullptr;  ///< Lent, from the begin of an equilibrium on.
   Front front_;
-  std::array<Below, base::kDirectionCount> below_{};
+  std::array<Below, kFaceCountMax> below_{};
   PlannedSet weak_;              ///< Nodes whose facets hold, but with little pressure.
-  std::uint8_t kept_count_ = 0;  ///< Facets that the root keeps.
+  std::uint8_t kept_count_ = 0;  ///< Nodes that the root keeps.
   Piece piece_ = Piece::kNone;
   bool has_no_room_ = false;
   bool has_no_state_ = false;
-  bool is_seeking_ = false;   ///< Kept facets begin in the states in use, not in "all stuck".
-  bool sends_front_ = false;  ///< A kFactor: the front goes up, not its loads alone.
-  int index_ = 0;             ///< Of what comes next in a piece.
+  bool is_seeking_ = false;    ///< Kept nodes begin in the states in use, not in "all stuck".
+  bool gives_states_ = false;  ///< No others than those that were given are looked for.
+  bool sends_front_ = false;   ///< A kFactor: the front goes up, not its loads alone.
+  int index_ = 0;              ///< Of what comes next in a piece.
   std::uint16_t down_awaited_ = 0;
 };
 

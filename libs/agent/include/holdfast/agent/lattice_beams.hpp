@@ -94,6 +94,18 @@ base::Vec6<Real> middle_force(const Beams<Real>& beams, base::Direction directio
                                   : beams.lattice->middle_force(direction, u_p, u_q);
 }
 
+template <class Real>
+base::Mat6<Real> block_11(const Beams<Real>& beams, base::Direction direction) {
+  return beams.lattice == nullptr ? mechanics::block_11(beams.stiffness, direction)
+                                  : beams.lattice->block_11(direction);
+}
+
+template <class Real>
+base::Mat6<Real> block_12(const Beams<Real>& beams, base::Direction direction) {
+  return beams.lattice == nullptr ? mechanics::block_12(beams.stiffness, direction)
+                                  : beams.lattice->block_12(direction);
+}
+
 #endif
 
 }  // namespace holdfast::agent

@@ -19,7 +19,8 @@ enum class Method : std::uint8_t {
   kConjugateGradients,  ///< Preconditioned with the 6x6 diagonal blocks.
   kPolynomial,   ///< One sweep an iteration, with a polynomial of 1.5 times the tree's depth.
   kElimination,  ///< One sweep an iteration, exactly over the tree; for robots with few loops.
-  kFronts,       ///< kElimination, and for many loops and other laws fronts in memory that is lent.
+  kFronts,       ///< kElimination, and for many loops and other laws fronts in memory that is lent;
+                 ///< where that is lent kElimination takes them too, when nothing else settles.
 };
 
 /// What is known before the robot is built, the same for all its modules. N, mm, MPa.

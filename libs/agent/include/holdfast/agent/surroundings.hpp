@@ -47,6 +47,9 @@ struct TouchingFacet {
   bool is_given = false;  ///< The state is the root's, not that of the forces.
 };
 
+/// Of lattices without a direction straight down a floor is touched there as well.
+inline constexpr std::size_t kTouchingFacetsMax = kFaceCountMax + 1;
+
 struct Environment;
 
 /// What acts on one node from outside the robot.
@@ -58,8 +61,7 @@ struct Surroundings {
   /// With Setup::has_plane: moments of the load besides, in units times parts of a pitch.
   std::array<std::int64_t, 2> moment{};
   std::uint8_t facet_count = 0;
-  /// Of lattices without a direction straight down a floor is touched there as well.
-  std::array<TouchingFacet, kFaceCountMax + 1> facets{};
+  std::array<TouchingFacet, kTouchingFacetsMax> facets{};
 };
 
 /// What is known of the world before the robot is built, the same for all its modules.

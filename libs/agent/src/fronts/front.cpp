@@ -45,14 +45,33 @@ bool Front::make(std::span<FrontNode> nodes, FrontMemory& memory) {
     complete_rows_ = i < complete_count_ ? rows_ : complete_rows_;
   }
   const auto rows = static_cast<std::size_t>(rows_);
-  const std::span<float> all = memory.take_reals(triangle_reals(rows) + 2 * rows);
+  const std::size_t triangle = triangle_reals(rows);
+  const std::size_t low = memory.has_low_parts ? triangle : 0;
+  const std::span<float> all = memory.take_reals(triangle + low + 2 * rows);
   if (all.empty() && rows > 0) {
     return false;
   }
   loads_ = all.first(rows);
   shifts_ = all.subspan(rows, rows);
-  matrix_ = all.subspan(2 * rows);
+  matrix_ = all.subspan(2 * rows, triangle);
+  low_ = all.subspan(2 * rows + triangle);
   return true;
+}
+
+void Front::set(std::size_t place, double value) {
+  matrix_[place] = static_cast<float>(value);
+  if (!low_.empty()) {
+    low_[place] = static_cast<float>(value - static_cast<double>(matrix_[place]));
+  }
+}
+
+void Front::add(int row, int column, double value) {
+  const std::size_t place = row >= column ? at(row, column) : at(column, row);
+  if (low_.empty()) {
+    matrix_[place] += static_cast<float>(value);
+  } else {
+    set(place, this->value(place) + value);
+  }
 }
 
 int Front::row_of(std::size_t node) const {
@@ -71,7 +90,7 @@ void Front::add_block(int row, int column, const base::Mat6<double>& block) {
     for (int j = 0; j < 6; ++j) {
       // Of a block on the diagonal the upper triangle is the lower one again.
       if (row != column || j <= i) {
-        add(row + i, column + j, static_cast<float>(block.at(i, j)));
+        add(row + i, column + j, block.at(i, j));
       }
     }
   }
@@ -79,37 +98,40 @@ void Front::add_block(int row, int column, const base::Mat6<double>& block) {
 
 /// The first `count` elements of two rows.
 double Front::product(int row, int column, int count) const {
-  const std::span<const float> a = matrix_.subspan(at(row, 0), static_cast<std::size_t>(count));
-  const std::span<const float> b = matrix_.subspan(at(column, 0), static_cast<std::size_t>(count));
+  const std::size_t a = at(row, 0);
+  const std::size_t b = at(column, 0);
   double sum = 0;
-  for (std::size_t k = 0; k < a.size(); ++k) {
-    sum += static_cast<double>(a[k]) * static_cast<double>(b[k]);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+    sum += value(a + k) * value(b + k);
   }
   return sum;
 }
 
-float Front::element_left(int index) const {
+float Front::element_left(int index, bool is_low) const {
   int row = complete_rows_;
   while (row < rows_ && index > row - complete_rows_) {
     index -= ++row - complete_rows_;
   }
-  return row < rows_ ? element(row, complete_rows_ + index) : 0;
+  if (row >= rows_) {
+    return 0;
+  }
+  const std::size_t place = at(row, complete_rows_ + index);
+  return is_low ? low_[place] : matrix_[place];
 }
 
 bool Front::factor_row(int row) {
   for (int column = 0; column <= row; ++column) {
-    float& value = matrix_[at(row, column)];
+    const std::size_t place = at(row, column);
     const bool is_complete = column < complete_rows_;
     const int count = is_complete ? column : complete_rows_;
-    const double rest = static_cast<double>(value) - product(row, column, count);
+    const double rest = value(place) - product(row, column, count);
     if (is_complete && row == column) {
       if (!(rest > 0)) {
         return false;
       }
-      value = static_cast<float>(square_root(rest));
+      set(place, square_root(rest));
     } else {
-      value = static_cast<float>(
-          is_complete ? rest / static_cast<double>(matrix_[at(column, column)]) : rest);
+      set(place, is_complete ? rest / element(column, column) : rest);
     }
   }
   return true;
@@ -126,10 +148,9 @@ void Front::condense_loads() {
     const int count = row < complete_rows_ ? row : complete_rows_;
     auto rest = static_cast<double>(load(row));
     for (int k = 0; k < count; ++k) {
-      rest -= static_cast<double>(element(row, k)) * static_cast<double>(load(k));
+      rest -= element(row, k) * static_cast<double>(load(k));
     }
-    load(row) = static_cast<float>(
-        row < complete_rows_ ? rest / static_cast<double>(element(row, row)) : rest);
+    load(row) = static_cast<float>(row < complete_rows_ ? rest / element(row, row) : rest);
   }
 }
 
@@ -137,9 +158,9 @@ void Front::find_shifts() {
   for (int row = complete_rows_ - 1; row >= 0; --row) {
     auto rest = static_cast<double>(load(row));
     for (int i = row + 1; i < rows_; ++i) {
-      rest -= static_cast<double>(element(i, row)) * static_cast<double>(shift(i));
+      rest -= element(i, row) * static_cast<double>(shift(i));
     }
-    shift(row) = static_cast<float>(rest / static_cast<double>(element(row, row)));
+    shift(row) = static_cast<float>(rest / element(row, row));
   }
 }
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/front_contact.hpp"
 
+#include "displacements.hpp"
+#include "facets.hpp"
 #include "scalar.hpp"
 
 namespace holdfast::agent {
@@ -25,15 +27,20 @@ constexpr int kHalvingMax = 40;
 /// start the slope must be at a full step.
 constexpr double kLeastPart = 1e-10;
 
+/// Steps in a row that end in the states they began with and lessen nothing: what is left is
+/// rounding, and the report says whether that is good enough.
+constexpr int kIdleSteps = 3;
+constexpr double kLessened = 0.9;
+
 /// How much all facets hold where too few do, and how much more where that is too little.
 constexpr double kHoldLeast = 1e-7;
 constexpr double kHoldMore = 10;
 
 }  // namespace
 
-FrontContact::FrontContact(const mechanics::GroundFacet<double>& law, Front& front,
-                           std::span<KeptFacet> facets, std::span<double> reals)
-    : law_(law), front_(front), facets_(facets), rows_(6 * facets.size()) {
+FrontContact::FrontContact(const ContactSetting& contact, Front& front, std::span<KeptNode> nodes,
+                           std::span<double> reals)
+    : contact_(contact), front_(front), nodes_(nodes), rows_(6 * nodes.size()) {
   const auto vector = [&](std::size_t i) {
     return reals.subspan(rows_ * rows_ + i * rows_, rows_);
   };
@@ -42,44 +49,54 @@ FrontContact::FrontContact(const mechanics::GroundFacet<double>& law, Front& fro
   g_ = vector(1);
   trial_ = vector(2);
   residual_ = vector(3);
-  start_ = vector(4);
 }
 
 bool FrontContact::solve() {
   clear(d_);
-  find_start();
   bool is_solved = false;
-  if (law_.law == mechanics::ContactLaw::kUnilateral) {
+  if (contact_.facet.law == mechanics::ContactLaw::kUnilateral) {
     is_solved = solve_unilateral();
   } else {
     is_solved = solve_regularised(kNewtonMax);
     if (!is_solved) {
       clear(d_);
-      for (KeptFacet& facet : facets_) {
-        facet.state = {.pressed = true};
+      for (KeptNode& node : nodes_) {
+        visit_facets(node, [](auto& facet, int) { facet.state = mechanics::kStuck; });
       }
       solve_regularised(kFirstSteps);
     }
   }
-  take(d_);
+  take(d_, true);
+  return is_solved;
+}
+
+bool FrontContact::solve_given() {
+  clear(d_);
+  find_residual(d_, residual_);
+  load_tangent(0);
+  const bool is_solved = solve_linear(residual_);
+  take(is_solved ? residual_ : d_, false);
   return is_solved;
 }
 
 void FrontContact::take_found() {
-  for (KeptFacet& facet : facets_) {
-    facet.state = facet.found;
+  for (KeptNode& node : nodes_) {
+    visit_facets(node, [](auto& facet, int) { facet.state = facet.found; });
   }
 }
 
-bool FrontContact::leads_elsewhere(std::size_t k) {
+bool FrontContact::leads_elsewhere(std::size_t node, int facet) {
   take_found();
-  facets_[k].state = {.pressed = !facets_[k].found.pressed};
+  visit_facets(nodes_[node], [facet](auto& tried, int index) {
+    tried.state = index == facet ? other_state(tried.found) : tried.state;
+  });
   clear(d_);
-  find_start();
   bool is_elsewhere = false;
   if (solve_regularised(kNewtonMax)) {
-    for (const KeptFacet& facet : facets_) {
-      is_elsewhere = is_elsewhere || !(facet.state == facet.found);
+    for (KeptNode& other : nodes_) {
+      visit_facets(other, [&](auto& ended, int) {
+        is_elsewhere = is_elsewhere || !(ended.state == ended.found);
+      });
     }
   }
   take_found();
@@ -96,13 +113,13 @@ double FrontContact::stiffness(std::size_t row, std::size_t column) const {
   const int first = front_.complete_rows();
   const int i = first + static_cast<int>(row > column ? row : column);
   const int j = first + static_cast<int>(row > column ? column : row);
-  return static_cast<double>(front_.element(i, j));
+  return front_.element(i, j);
 }
 
-base::Vec6<double> FrontContact::displacement(std::size_t facet, const Vector& d) const {
-  base::Vec6<double> u = facets_[facet].u;
+base::Vec6<double> FrontContact::displacement(std::size_t node, const Vector& d) const {
+  base::Vec6<double> u = nodes_[node].u;
   for (std::size_t i = 0; i < 6; ++i) {
-    u[i] += d[6 * facet + i];
+    u[i] += d[6 * node + i];
   }
   return u;
 }
@@ -110,39 +127,31 @@ base::Vec6<double> FrontContact::displacement(std::size_t facet, const Vector& d
 /// Takes over the states at u + d. False: they are those already in use.
 bool FrontContact::follow_states(const Vector& d) {
   bool has_changed = false;
-  for (std::size_t k = 0; k < facets_.size(); ++k) {
-    const mechanics::ContactState state =
-        mechanics::contact_state(law_, mechanics::trial_force(law_, displacement(k, d)));
-    has_changed = has_changed || !(state == facets_[k].state);
-    facets_[k].state = state;
+  for (std::size_t k = 0; k < nodes_.size(); ++k) {
+    has_changed = follow_states_at(nodes_[k], contact_, displacement(k, d)) || has_changed;
   }
   return has_changed;
 }
 
-/// In the states that the law has for u, which are not those of the start.
-void FrontContact::find_start() {
-  for (std::size_t k = 0; k < facets_.size(); ++k) {
-    const KeptFacet& facet = facets_[k];
-    const mechanics::ContactState state =
-        mechanics::contact_state(law_, mechanics::trial_force(law_, facet.u));
-    const base::Vec6<double> force = mechanics::contact_force(law_, state, facet.was_held, facet.u);
-    for (std::size_t i = 0; i < 6; ++i) {
-      start_[6 * k + i] = force[i];
-    }
+std::uint32_t FrontContact::states_hash() const {
+  std::uint32_t hash = 0;
+  for (const KeptNode& node : nodes_) {
+    visit_facets(node, [&](const auto& facet, int index) {
+      hash += hash_of(node.cell, mechanics::ContactState::kCodeCount * index + facet.state.code());
+    });
   }
+  return hash;
 }
 
-/// r + F(u) - S d - F(u + d), in the states in use.
+/// r + F(u) - S d - F(u + d), in the states in use; F(u) in those that the loads were found in.
 void FrontContact::find_residual(const Vector& d, Vector& residual) const {
-  for (std::size_t k = 0; k < facets_.size(); ++k) {
-    const KeptFacet& facet = facets_[k];
-    const base::Vec6<double> force =
-        mechanics::contact_force(law_, facet.state, facet.is_held, displacement(k, d));
+  for (std::size_t k = 0; k < nodes_.size(); ++k) {
+    const base::Vec6<double> force = facet_force(nodes_[k], contact_, displacement(k, d));
     for (std::size_t i = 0; i < 6; ++i) {
       const std::size_t row = 6 * k + i;
       residual[row] =
           static_cast<double>(front_.load(front_.complete_rows() + static_cast<int>(row))) +
-          start_[row] - force[i];
+          nodes_[k].force[i] - force[i];
       for (std::size_t column = 0; column < rows_; ++column) {
         residual[row] -= stiffness(row, column) * d[column];
       }
@@ -150,17 +159,18 @@ void FrontContact::find_residual(const Vector& d, Vector& residual) const {
   }
 }
 
-/// The matrix: S, the facets' tangents and `hold` of what they would be if all held all over.
+/// The matrix: S, the facets' tangents and `hold` of that of a facet on the floor that holds all
+/// over.
 void FrontContact::load_tangent(double hold) {
   for (std::size_t row = 0; row < rows_; ++row) {
     for (std::size_t column = 0; column < rows_; ++column) {
       matrix_[row * rows_ + column] = stiffness(row, column);
     }
   }
-  for (std::size_t k = 0; k < facets_.size(); ++k) {
-    const base::Mat6<double> tangent =
-        mechanics::contact_tangent(law_, facets_[k].state, facets_[k].is_held);
-    const base::Mat6<double> held = mechanics::contact_tangent(law_, mechanics::kStuck, true);
+  const base::Mat6<double> held =
+      mechanics::contact_tangent(contact_.facet, mechanics::kStuck, true);
+  for (std::size_t k = 0; k < nodes_.size(); ++k) {
+    const base::Mat6<double> tangent = facet_tangent(nodes_[k], contact_);
     for (int i = 0; i < 6; ++i) {
       for (int j = 0; j < 6; ++j) {
         matrix_[(6 * k + static_cast<std::size_t>(i)) * rows_ + 6 * k +
@@ -264,6 +274,8 @@ bool FrontContact::solve_unilateral() {
   follow_states(d_);
   double first = 0;
   double hold = 0;
+  double least = 0;
+  int idle_count = 0;
   for (int step = 0; step < kConvexMax; ++step) {
     find_residual(d_, residual_);
     for (std::size_t i = 0; i < rows_; ++i) {
@@ -276,33 +288,40 @@ bool FrontContact::solve_unilateral() {
       work += residual_[i] * g_[i];
     }
     first = first > 0 ? first : work;
-    if (is_regular && absolute(work) <= kLeastPart * kLeastPart * first) {
+    const bool is_least = absolute(work) <= kLeastPart * kLeastPart * first;
+    if (is_regular && (is_least || idle_count == kIdleSteps)) {
       return true;
     }
     if (!is_regular || !(work > 0)) {
       hold = hold > 0 ? kHoldMore * hold : kHoldLeast;
       continue;
     }
+    const std::uint32_t states = states_hash();
     const double length = step_length(g_, d_);
     for (std::size_t i = 0; i < rows_; ++i) {
       d_[i] += length * g_[i];
     }
     follow_states(d_);
+    const bool is_idle = work > kLessened * least && least > 0 && states_hash() == states;
+    idle_count = is_idle ? idle_count + 1 : 0;
+    least = is_idle ? least : work;
   }
   return false;
 }
 
-/// As single precision has it, like the module itself, whose facet is in the same state then.
-void FrontContact::take(const Vector& d) {
-  for (std::size_t k = 0; k < facets_.size(); ++k) {
-    KeptFacet& facet = facets_[k];
+/// As single precision has it, like the module itself, whose facets are in the same states then.
+void FrontContact::take(const Vector& d, bool follows) {
+  for (std::size_t k = 0; k < nodes_.size(); ++k) {
+    KeptNode& node = nodes_[k];
     for (std::size_t i = 0; i < 6; ++i) {
       float& shift = front_.shift(front_.complete_rows() + static_cast<int>(6 * k + i));
       shift = static_cast<float>(d[6 * k + i]);
-      facet.u[i] += static_cast<double>(shift);
+      node.u[i] += static_cast<double>(shift);
     }
-    facet.state = mechanics::contact_state(law_, mechanics::trial_force(law_, facet.u));
-    facet.was_held = facet.is_held;
+    if (follows) {
+      follow_states_at(node, contact_, node.u);
+    }
+    node.force = facet_force(node, contact_, node.u);
   }
 }
 

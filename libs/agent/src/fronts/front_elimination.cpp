@@ -5,6 +5,7 @@
 #include "beams.hpp"
 #include "displacements.hpp"
 #include "facets.hpp"
+#include "fronts/front_codec.hpp"
 #include "holdfast/agent/messages.hpp"
 #include "scalar.hpp"
 #include "stage_load.hpp"
@@ -27,21 +28,15 @@ int exchange_room(const Workspace& ws) {
   return (2 * planned + 2) * wire::kVectorBytes;
 }
 
-/// In the fourth real of a node's message: faces that are missing, then these.
-constexpr unsigned kFixedBit = 1U << 6U;
-constexpr unsigned kKeptBit = 1U << 7U;
-constexpr unsigned kHeldBit = 1U << 8U;
-constexpr unsigned kReleasedBit = 1U << 9U;
-constexpr unsigned kFacesMask = kFixedBit - 1;
-
-/// In the fifth two contact states.
-constexpr int kCodeBase = mechanics::ContactState::kCodeCount;
-
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 std::size_t at(Direction face) { return static_cast<std::size_t>(face); }
 
-bool holds_all_over(const Node& node) { return node.is_held && node.state == mechanics::kStuck; }
+bool holds_all_over(const Node& node) {
+  const Surroundings* surroundings = surroundings_of(node);
+  return surroundings != nullptr ? surrounded::hold_all_over(*surroundings)
+                                 : node.is_held && node.state == mechanics::kStuck;
+}
 
 /// Of its pressure a facet loses so much until it counts as one that holds all over in any case. Of
 /// those that are nearer to letting go most do, when others have: kept with the first that do they
@@ -49,72 +44,28 @@ bool holds_all_over(const Node& node) { return node.is_held && node.state == mec
 /// worst takes 33, 30, 30, 30 and 458 sweeps, the fronts of the last being too large for modules.
 constexpr double kWeakShare = 0.95;
 
+/// Are the states that the law prescribes others than those in use?
+bool wants_others(Node& node, const ContactSetting& contact) {
+  Surroundings* surroundings = surroundings_of(node);
+  return surroundings != nullptr &&
+         surrounded::look_up_states(*surroundings, contact, node.u, kPressureTieEliminated);
+}
+
 bool is_weak(const Node& node, const ContactSetting& contact) {
+  if (const Surroundings* surroundings = surroundings_of(node); surroundings != nullptr) {
+    return surrounded::is_any_weak(*surroundings, contact, node.u, kWeakShare);
+  }
   base::Vec6<double> trial = mechanics::trial_force(contact.facet, node.u);
   trial[2] *= 1 - kWeakShare;
   return node.is_ground && !(mechanics::contact_state(contact.facet, trial) == mechanics::kStuck);
 }
 
-base::Vec6<float> packed(const FrontNode& node) {
-  const unsigned code = node.missing.mask() | (node.is_fixed ? kFixedBit : 0U) |
-                        (node.is_kept ? kKeptBit : 0U) | (node.is_held ? kHeldBit : 0U) |
-                        (node.was_released ? kReleasedBit : 0U);
-  return {static_cast<float>(node.cell.x),
-          static_cast<float>(node.cell.y),
-          static_cast<float>(node.cell.z),
-          static_cast<float>(code),
-          static_cast<float>(node.state.code() + kCodeBase * node.found.code()),
-          node.is_doubtful ? 1.0F : 0.0F};
-}
-
-/// False: no program of this version sends it.
-bool unpack(const base::Vec6<float>& vector, FrontNode& node) {
-  constexpr auto kMost = static_cast<float>(base::kCoordinateMax);
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (!(vector[i] >= -kMost && vector[i] <= kMost)) {
-      return false;
-    }
-  }
-  if (!(vector[3] >= 0 && vector[3] < 2 * static_cast<float>(kReleasedBit))) {
-    return false;
-  }
-  if (!(vector[4] >= 0 && vector[4] < static_cast<float>(kCodeBase * kCodeBase))) {
-    return false;
-  }
-  const auto code = static_cast<unsigned>(vector[3]);
-  const int states = static_cast<int>(vector[4]);
-  node = {.cell = {static_cast<std::int32_t>(vector[0]), static_cast<std::int32_t>(vector[1]),
-                   static_cast<std::int32_t>(vector[2])},
-          .missing = Faces::from_mask(static_cast<std::uint8_t>(code & kFacesMask)),
-          .is_fixed = (code & kFixedBit) != 0,
-          .is_kept = (code & kKeptBit) != 0,
-          .is_held = (code & kHeldBit) != 0,
-          .was_released = (code & kReleasedBit) != 0,
-          .is_doubtful = vector[5] > 0,
-          .state = mechanics::ContactState::from_code(states % kCodeBase),
-          .found = mechanics::ContactState::from_code(states / kCodeBase)};
-  return true;
-}
-
-/// Displacements of kept nodes go up in two parts, as in an exchange.
-constexpr int kPartsOfKept = 2;
-
-base::Vec6<float> part_of(const base::Vec6<double>& u, bool is_low) {
-  base::Vec6<float> part{};
-  for (std::size_t i = 0; i < 6; ++i) {
-    const double leading = leading_part(u[i]);
-    part[i] = static_cast<float>(is_low ? u[i] - leading : leading);
-  }
-  return part;
-}
-
 /// Puts together what has both its ends in the list.
-void join_beams(std::span<FrontNode> nodes) {
+void join_beams(const Workspace& ws, std::span<FrontNode> nodes) {
   for (FrontNode& node : nodes) {
     for (const Direction face : node.missing) {
       for (FrontNode& other : nodes) {
-        if (other.cell == base::neighbour(node.cell, face) &&
-            other.missing.has(base::opposite(face))) {
+        if (other.cell == ws.beside(node.cell, face) && other.missing.has(base::opposite(face))) {
           node.missing.remove(face);
           node.joined.add(face);
           other.missing.remove(base::opposite(face));
@@ -139,6 +90,7 @@ bool FrontElimination::begin(Workspace& ws, const Order& order, int /*piece*/) {
   if (order.operation == Operation::kBegin) {
     begin_law(ws, order);
     memory_ = ws.front_memory();
+    memory_->has_low_parts = ws.environment() != nullptr && !ws.environment()->is_level;
   } else if (order.operation == Operation::kFactor) {
     keep_weak(ws);
     factor();
@@ -167,6 +119,7 @@ void FrontElimination::begin_law(Workspace& ws, const Order& order) {
   begin_equilibrium(ws, order);
   weak_ = {};
   is_seeking_ = false;
+  gives_states_ = false;
   for (int i = 0; i < ws.node_count(); ++i) {
     ws.node(i).is_kept = kept.has(i);
   }
@@ -219,7 +172,15 @@ bool FrontElimination::take_exchange(Workspace& ws, const Order& /*order*/, int 
   weak_ = {};
   for (int i = 0; i < ws.node_count(); ++i) {
     Node& node = ws.node(i);
-    follow_state(node, ws.contact, false);
+    if (gives_states_) {
+      node.has_changed = wants_others(node, ws.contact);
+      continue;
+    }
+    if (surroundings_of(node) != nullptr) {
+      follow_states_at(node, ws.contact, node.u);
+    } else {
+      follow_state(node, ws.contact, false);
+    }
     node.has_changed = node.is_ground && !node.is_kept && !holds_all_over(node);
     node.is_kept = node.is_kept || node.has_changed;
     if (is_weak(node, ws.contact)) {
@@ -236,12 +197,7 @@ bool FrontElimination::report(Workspace& ws, const Order& order, int piece, Repo
     return false;
   }
   if (order.operation == Operation::kSeek) {
-    Report known;
-    seek_facets(ws, order, known);
-    is_seeking_ = true;
-    if (ws.tree.is_root()) {
-      seek_kept(ws, order, sum);
-    }
+    seek(ws, order, sum);
     return false;
   }
   if (order.operation != Operation::kTreeIterate) {
@@ -254,40 +210,68 @@ bool FrontElimination::report(Workspace& ws, const Order& order, int piece, Repo
 
 /// The root's do what they do where they are, so that no front has to be made anew.
 void FrontElimination::hold_kept(const Order& order) {
-  if (kept_count_ == 0) {
-    return;
-  }
   Report known;
-  for (KeptFacet& facet : memory_->kept.first(kept_count_)) {
-    hold_facet(facet, (order.flags & kFreeOpen) != 0, known);
+  for (KeptNode& node : kept()) {
+    visit_facets(
+        node, [&](auto& facet, int) { hold_facet(facet, (order.flags & kFreeOpen) != 0, known); });
   }
 }
 
-/// The root knows all facets that may differ, as those that hold all over do not, and tries them
-/// where they are: only those that lead elsewhere are worth an order.
+std::span<KeptNode> FrontElimination::kept() const {
+  return kept_count_ == 0 ? std::span<KeptNode>() : memory_->kept.first(kept_count_);
+}
+
+/// The root knows all facets that may differ, as those that hold all over do not. Where all states
+/// of all facets are gone through, every facet that can let go is kept from now on.
+void FrontElimination::seek(Workspace& ws, const Order& order, Report& sum) {
+  const bool names_all = order.flags == kEachState || (order.flags & kOneFoot) != 0;
+  Report known;
+  seek_facets(ws, order, names_all ? sum : known);
+  is_seeking_ = true;
+  gives_states_ = order.flags == kEachState;
+  for (int i = 0; i < ws.node_count() && names_all; ++i) {
+    Node& node = ws.node(i);
+    const Surroundings* surroundings = surroundings_of(node);
+    const bool can_let_go = surroundings == nullptr || !surrounded::is_all_bonded(*surroundings);
+    node.is_kept = node.is_kept || (node.is_ground && can_let_go);
+  }
+  if (!names_all) {
+    return seek_kept(ws, order, sum);
+  }
+  for (KeptNode& node : kept()) {
+    if (Surroundings* surroundings = surroundings_of(node); surroundings != nullptr) {
+      surrounded::seek_facets(*surroundings, ws.contact, node.u, node.cell, order, known);
+    }
+  }
+}
+
+/// On a level floor the root tries facets where they are: only those that lead elsewhere are worth
+/// an order. Elsewhere a robot may hang on weak springs, and single precision of S does not tell.
 void FrontElimination::seek_kept(const Workspace& ws, const Order& order, Report& sum) {
-  if (kept_count_ == 0) {
-    return;
-  }
-  const std::span<KeptFacet> kept = memory_->kept.first(kept_count_);
   if ((order.flags & kRemember) != 0) {
-    for (KeptFacet& facet : kept) {
-      facet.found = facet.state;
+    for (KeptNode& node : kept()) {
+      visit_facets(node, [](auto& facet, int) { facet.found = facet.state; });
     }
-    FrontContact contact(ws.contact.facet, front_, kept, memory_->contact);
-    for (std::size_t k = 0; k < kept.size(); ++k) {
-      kept[k].is_doubtful =
-          is_doubtful(ws.contact, kept[k].found, kept[k].u) && contact.leads_elsewhere(k);
+    FrontContact contact(ws.contact, front_, kept(), memory_->contact);
+    const bool is_level = ws.environment() == nullptr || ws.environment()->is_level;
+    for (std::size_t k = 0; k < kept().size(); ++k) {
+      KeptNode& node = kept()[k];
+      visit_facets(node, [&](auto& facet, int index) {
+        const base::Vec6<double> u = facet_displacement(node, index, node.u);
+        facet.is_doubtful = is_doubtful(ws.contact, facet.found, u) &&
+                            (!is_level || contact.leads_elsewhere(k, index));
+      });
     }
   }
-  for (KeptFacet& facet : kept) {
-    const bool is_tried = facet.is_doubtful && facet.key == order.key();
-    facet.state = is_tried ? mechanics::ContactState{.pressed = !facet.found.pressed} : facet.found;
-    if (facet.is_doubtful) {
-      ++sum.count;
-      const bool is_next = facet.key > order.key() && (sum.number == 0 || facet.key < sum.number);
-      sum.number = is_next ? facet.key : sum.number;
-    }
+  for (KeptNode& node : kept()) {
+    visit_facets(node, [&](auto& facet, int index) {
+      const std::uint32_t key = seek_key(node.cell, index);
+      const bool is_tried = facet.is_doubtful && key == order.key();
+      facet.state = is_tried ? other_state(facet.found) : facet.found;
+      if (facet.is_doubtful) {
+        offer_key(key, order, sum);
+      }
+    });
   }
 }
 
@@ -350,8 +334,14 @@ void FrontElimination::take_up(const Order& order, Direction face,
     take_node(below, in.vector);
   } else if (below.kept_here < kPartsOfKept * below.kept_count) {
     take_kept(below, in.vector);
-  } else if (below.vectors_here < triangle_vectors(6 * below.moving_count)) {
-    take_vector(below.matrix, at(below.vectors_here++), in.vector);
+  } else if (below.states_here < below.states_count) {
+    take_facets(below, in.vector);
+  } else if (below.vectors_here < matrix_parts() * triangle_vectors(6 * below.moving_count)) {
+    const int high_count = triangle_vectors(6 * below.moving_count);
+    const int index = below.vectors_here++;
+    const bool is_low = index >= high_count;
+    take_vector(is_low ? below.low : below.matrix, at(is_low ? index - high_count : index),
+                in.vector);
   } else {
     take_vector(below.loads, below.loads_here++, in.vector);
   }
@@ -374,15 +364,18 @@ void FrontElimination::take_node(Below& below, const base::Vec6<float>& vector) 
   ++below.nodes_here;
   below.moving_count = static_cast<std::uint16_t>(below.moving_count + (node.is_fixed ? 0 : 1));
   below.kept_count = static_cast<std::uint16_t>(below.kept_count + (node.is_kept ? 1 : 0));
+  below.states_count = static_cast<std::uint16_t>(below.states_count + state_vectors(node));
   if (below.nodes_here < below.node_count) {
     return;
   }
   const std::size_t rows = 6 * std::size_t{below.moving_count};
-  const std::span<float> reals = memory_->take_reals(triangle_reals(rows) + rows);
+  const std::size_t triangle = triangle_reals(rows);
+  const std::span<float> reals = memory_->take_reals(rows + at(matrix_parts()) * triangle);
   below.has_room = below.has_room && (!reals.empty() || rows == 0);
   if (below.has_room) {
     below.loads = reals.first(rows);
-    below.matrix = reals.subspan(rows);
+    below.matrix = reals.subspan(rows, triangle);
+    below.low = reals.subspan(rows + triangle);
   }
 }
 
@@ -392,6 +385,16 @@ void FrontElimination::take_kept(Below& below, const base::Vec6<float>& vector) 
     if (node.is_kept && k-- == 0) {
       base::add_to(node.u, base::converted<double>(vector));
     }
+  }
+}
+
+void FrontElimination::take_facets(Below& below, const base::Vec6<float>& vector) {
+  int part = below.states_here++;
+  for (FrontNode& node : below.nodes) {
+    if (part >= 0 && part < state_vectors(node)) {
+      take_states(vector, part, node);
+    }
+    part -= state_vectors(node);
   }
 }
 
@@ -452,25 +455,32 @@ bool FrontElimination::make_front(Workspace& ws) {
   }
   for (int i = 0; i < ws.node_count(); ++i) {
     const Node& node = ws.node(i);
-    nodes[next++] = {.cell = ws.cell_of(i),
-                     .missing = ws.faces_of(i),
-                     .is_fixed = node.is_fixed,
-                     .is_kept = node.is_kept,
-                     .is_held = node.is_held,
-                     .was_released = node.was_released,
-                     .is_doubtful = node.is_doubtful,
-                     .state = node.state,
-                     .found = node.found,
-                     .u = node.u};
+    FrontNode& own = nodes[next++];
+    own = {.cell = ws.cell_of(i),
+           .missing = ws.faces_of(i),
+           .is_fixed = node.is_fixed,
+           .is_kept = node.is_kept,
+           .is_held = node.is_held,
+           .was_released = node.was_released,
+           .is_doubtful = node.is_doubtful,
+           .state = node.state,
+           .found = node.found,
+           .u = node.u};
+    if (const Surroundings* surroundings = surroundings_of(node); surroundings != nullptr) {
+      own.facet_count = surroundings->facet_count;
+      for (std::size_t k = 0; k < own.facet_count; ++k) {
+        own.facets[k] = packed_state(surroundings->facets[k]);
+      }
+    }
   }
-  join_beams(nodes);
+  join_beams(ws, nodes);
   return front_.make(nodes, *memory_) &&
          front_.nodes().size() - front_.complete_count() < kNoFront &&
-         (!ws.tree.is_root() || take_kept_facets(ws));
+         (!ws.tree.is_root() || take_kept_nodes(ws));
 }
 
-/// What the root keeps of facets; nothing else is left of its front.
-bool FrontElimination::take_kept_facets(const Workspace& ws) {
+/// What the root keeps; nothing else is left of its front.
+bool FrontElimination::take_kept_nodes(const Workspace& ws) {
   const std::span<const FrontNode> rest = front_.nodes().subspan(front_.complete_count());
   if (rest.size() > memory_->kept.size() || contact_reals(rest.size()) > memory_->contact.size()) {
     return false;
@@ -479,16 +489,45 @@ bool FrontElimination::take_kept_facets(const Workspace& ws) {
     if (!node.is_kept || node.is_fixed) {
       return false;
     }
-    memory_->kept[kept_count_++] = {.u = node.u,
-                                    .state = is_seeking_ ? node.state : mechanics::kStuck,
-                                    .is_held = node.is_held,
-                                    .was_held = node.is_held,
-                                    .was_released = node.was_released,
-                                    .found = node.found,
-                                    .is_doubtful = node.is_doubtful,
-                                    .key = seek_key(from_root(ws, node.cell), 0)};
+    KeptNode& kept = memory_->kept[kept_count_];
+    kept = {.u = node.u,
+            .state = node.state,
+            .is_held = node.is_held,
+            .was_released = node.was_released,
+            .found = node.found,
+            .is_doubtful = node.is_doubtful,
+            .cell = from_root(ws, node.cell)};
+    if (!take_surroundings(ws, node, kept)) {
+      return false;
+    }
+    kept.force = facet_force(kept, ws.contact, kept.u);
+    visit_facets(kept, [this](auto& facet, int) {
+      facet.state = is_seeking_ ? facet.state : mechanics::kStuck;
+    });
+    ++kept_count_;
   }
   return true;
+}
+
+/// What a kept node touches is known before the robot is built, in which states is what was sent.
+/// False: no program of this version sends that, or there is no memory.
+bool FrontElimination::take_surroundings(const Workspace& ws, const FrontNode& node,
+                                         KeptNode& kept) {
+  const Environment* environment = ws.environment();
+  if (environment == nullptr) {
+    return node.facet_count == 0;
+  }
+  if (kept_count_ >= memory_->touching.size()) {
+    return false;
+  }
+  Surroundings& surroundings = memory_->touching[kept_count_];
+  surroundings = {.environment = environment};
+  environment->describe(environment->map, node.cell, surroundings);
+  for (std::size_t k = 0; k < surroundings.facet_count; ++k) {
+    unpack_state(node.facets[k], surroundings.facets[k]);
+  }
+  kept.surroundings = &surroundings;
+  return surroundings.facet_count == node.facet_count;
 }
 
 /// The first row of the node in a cell; -1 if it has none.
@@ -519,7 +558,8 @@ void FrontElimination::add_below(const Below& below) {
         const int column = row_at(other.cell);
         const int last = column_count == row_count ? i : 5;
         for (int j = 0; j <= last; ++j) {
-          front_.add(row + i, column + j, below.matrix[next++]);
+          const double low = below.low.empty() ? 0 : static_cast<double>(below.low[next]);
+          front_.add(row + i, column + j, static_cast<double>(below.matrix[next++]) + low);
         }
         ++column_count;
       }
@@ -535,10 +575,10 @@ void FrontElimination::add_beams(const Workspace& ws) {
       if (row < 0) {
         continue;
       }
-      front_.add_block(row, row, mechanics::block_11(ws.setup.beam, face));
-      const int column = row_at(base::neighbour(node.cell, face));
+      front_.add_block(row, row, block_11(ws.setup.beams(), face));
+      const int column = row_at(ws.beside(node.cell, face));
       if (base::index(face) % 2 == 0 && column >= 0) {
-        front_.add_block(row, column, mechanics::block_12(ws.setup.beam, face));
+        front_.add_block(row, column, block_12(ws.setup.beams(), face));
       }
     }
   }
@@ -550,8 +590,7 @@ void FrontElimination::add_facets(const Workspace& ws) {
     const Node& node = ws.node(i);
     if (node.is_ground && !node.is_kept) {
       const int row = row_at(ws.cell_of(i));
-      front_.add_block(row, row,
-                       mechanics::contact_tangent(ws.contact.facet, node.state, node.is_held));
+      front_.add_block(row, row, facet_tangent(node, ws.contact));
     }
   }
 }
@@ -643,13 +682,22 @@ bool FrontElimination::find_vector_up(int index, base::Vec6<float>& vector, int&
         }
       }
     }
-    if (index < triangle_vectors(rows)) {
-      for (int i = 0; i < 6; ++i) {
-        vector[at(i)] = front_.element_left(6 * index + i);
+    for (const FrontNode& node : nodes) {
+      if (index < state_vectors(node)) {
+        vector = states_of(node, index);
+        return true;
       }
-      return true;
+      index -= state_vectors(node);
     }
-    index -= triangle_vectors(rows);
+    for (int part = 0; part < matrix_parts(); ++part) {
+      if (index < triangle_vectors(rows)) {
+        for (int i = 0; i < 6; ++i) {
+          vector[at(i)] = front_.element_left(6 * index + i, part > 0);
+        }
+        return true;
+      }
+      index -= triangle_vectors(rows);
+    }
   }
   for (int i = 0; i < 6 && 6 * index < rows; ++i) {
     vector[at(i)] = front_.load(front_.complete_rows() + 6 * index + i);
@@ -661,9 +709,8 @@ bool FrontElimination::find_vector_up(int index, base::Vec6<float>& vector, int&
 
 void FrontElimination::find_shifts(const Workspace& ws) {
   if (!has_no_room_ && ws.tree.is_root() && kept_count_ > 0) {
-    FrontContact contact(ws.contact.facet, front_, memory_->kept.first(kept_count_),
-                         memory_->contact);
-    has_no_state_ = !contact.solve();
+    FrontContact contact(ws.contact, front_, kept(), memory_->contact);
+    has_no_state_ = !(gives_states_ ? contact.solve_given() : contact.solve());
   }
   if (!has_no_room_) {
     front_.find_shifts();
