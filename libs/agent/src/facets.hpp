@@ -12,9 +12,9 @@
 namespace holdfast::agent {
 
 /// The surroundings of a node, or null: it can touch a floor only. `Foot`, here and below: a Node,
-/// or a KeptNode of a root with fronts.
+/// or a KeptNode of a root with fronts. (Small images need the hint `inline`.)
 template <class Foot>
-Surroundings* surroundings_of([[maybe_unused]] const Foot& node) {
+inline Surroundings* surroundings_of([[maybe_unused]] const Foot& node) {
 #ifdef HOLDFAST_AGENT_FLOOR_ONLY
   return nullptr;
 #else
@@ -78,7 +78,7 @@ mechanics::SupportCorners support_corners(const Surroundings& node, const Contac
 /// The force of the facets of a node on the ground for the displacement u, in the states in use;
 /// linear in u.
 template <class Foot>
-base::Vec6<double> facet_force(const Foot& node, const ContactSetting& contact,
+inline base::Vec6<double> facet_force(const Foot& node, const ContactSetting& contact,
                                const base::Vec6<double>& u) {
   const Surroundings* surroundings = surroundings_of(node);
   return surroundings != nullptr
@@ -115,7 +115,7 @@ inline base::Vec6<double> facet_force_in_use(const Node& node, const ContactSett
 
 /// The facets' tangent, of a node on the ground.
 template <class Foot>
-base::Mat6<double> facet_tangent(const Foot& node, const ContactSetting& contact) {
+inline base::Mat6<double> facet_tangent(const Foot& node, const ContactSetting& contact) {
   const Surroundings* surroundings = surroundings_of(node);
   if (surroundings == nullptr) {
     return mechanics::contact_tangent(contact.facet, node.state, node.is_held);
