@@ -79,7 +79,7 @@ mechanics::SupportCorners support_corners(const Surroundings& node, const Contac
 /// linear in u.
 template <class Foot>
 inline base::Vec6<double> facet_force(const Foot& node, const ContactSetting& contact,
-                               const base::Vec6<double>& u) {
+                                      const base::Vec6<double>& u) {
   const Surroundings* surroundings = surroundings_of(node);
   return surroundings != nullptr
              ? surrounded::facet_force(*surroundings, contact, u)

@@ -150,8 +150,6 @@ class Front {
 
   double product(int row, int column, int count) const;
 
-  std::span<FrontNode> nodes_;
-
   double value(std::size_t place) const {
     const auto high = static_cast<double>(matrix_[place]);
     return low_.empty() ? high : high + static_cast<double>(low_[place]);
@@ -159,6 +157,7 @@ class Front {
 
   void set(std::size_t place, double value);
 
+  std::span<FrontNode> nodes_;
   std::span<float> matrix_;
   std::span<float> low_;  ///< What matrix_ leaves; empty where it has no second part.
   std::span<float> loads_;
