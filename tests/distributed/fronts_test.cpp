@@ -71,10 +71,9 @@ TEST(Fronts, no_robot_is_safe_that_another_solution_breaks) {
 
 /// Walls, ceilings, slots and floors, masses and payloads, laws of connectors: the root knows what
 /// a kept node touches, so that no other method is needed. Who is undecided besides has a trial
-/// that does not converge, or may slip. Cubes 63, four modules on three facets, are safe by the
-/// exact law where the exact solver knows several solutions of the paper's, by one of which a
-/// connection breaks: of few facets the robot goes through those states only in which it would
-/// fall.
+/// that does not converge, or may slip. Cubes 63, four modules on three facets, are safe where the
+/// exact solver knows another solution of the paper's law, by which a connection breaks: it goes
+/// through all states of so few facets, the robot puts one at a time into another state.
 TEST(Fronts, robots_of_every_lattice_on_any_supports_are_decided_by_them_alone) {
   int decided = 0;
   int undecided_alone = 0;
