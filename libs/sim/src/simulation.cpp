@@ -151,19 +151,6 @@ std::optional<std::string> find_floor_fault(const model::Robot& robot) {
   return std::nullopt;
 }
 
-namespace {
-
-bool is_level(const model::Robot& robot, const SimulationOptions& options) {
-  return stands_level(robot) && (options.step_end == nullptr || stands_level(*options.step_end));
-}
-
-}  // namespace
-
-agent::Method usual_method(const model::Robot& robot, const SimulationOptions& options) {
-  const bool has_one_sweep = options.only_one_sweep || is_level(robot, options);
-  return has_one_sweep ? agent::Method::kElimination : agent::Method::kFronts;
-}
-
 agent::Setup make_setup(const model::Robot& robot, const SimulationOptions& options) {
   const model::Material& material = robot.material();
   const FootParts foot = foot_parts(robot, agent::kFacetPartMax);
@@ -177,14 +164,16 @@ agent::Setup make_setup(const model::Robot& robot, const SimulationOptions& opti
   setup.facet_numerator = foot.numerator;
   setup.facet_denominator = foot.denominator;
   setup.support_z = robot.support_z();
-  setup.method = options.method.value_or(usual_method(robot, options));
+  const bool is_level =
+      stands_level(robot) && (options.step_end == nullptr || stands_level(*options.step_end));
+  setup.method = options.method.value_or(
+      options.only_one_sweep || is_level ? agent::Method::kElimination : agent::Method::kFronts);
   setup.degree_max = options.degree_max;
   setup.only_one_sweep = options.only_one_sweep;
   const bool has_map = needs_environment(robot, options.step_end);
   setup.has_friction =
       has_friction(robot) || (options.step_end != nullptr && has_friction(*options.step_end));
-  setup.keeps_answers =
-      options.keeps_answers && !setup.has_friction && (!has_map || is_level(robot, options));
+  setup.keeps_answers = options.keeps_answers && !setup.has_friction && (!has_map || is_level);
   const RatioBounds bounds = ratio_bounds(robot, options.step_end);
   setup.ratio_per_n = bounds.per_n;
   setup.ratio_per_nmm = bounds.per_nmm;

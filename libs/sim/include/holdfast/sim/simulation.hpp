@@ -29,11 +29,14 @@ using Tamper = std::function<int(Time now, std::int32_t module, base::Direction 
 
 struct SimulationOptions {
   LinkModel link = unit();
-  std::uint64_t seed = 1;                    ///< Of noise, clocks and session numbers.
-  std::optional<agent::Method> method = {};  ///< See agent::Setup; none: usual_method().
-  std::uint8_t degree_max = 200;             ///< See agent::Setup.
-  bool only_one_sweep = false;               ///< See agent::Setup: modules with little flash.
-  bool keeps_answers = true;  ///< See agent::Setup. False: every change starts from nothing.
+  std::uint64_t seed = 1;  ///< Of noise, clocks and session numbers.
+  /// See agent::Setup. None: elimination on a level floor under weight alone, from which a robot
+  /// goes on at its next change, else fronts. Whoever is no robot of cubes on a floor is lent
+  /// memory anyway, then that for fronts too.
+  std::optional<agent::Method> method = {};
+  std::uint8_t degree_max = 200;  ///< See agent::Setup.
+  bool only_one_sweep = false;    ///< See agent::Setup: modules with little flash.
+  bool keeps_answers = true;      ///< See agent::Setup. False: every change starts from nothing.
   bool deflates = false;      ///< Modules have the memory to keep how they moved (deflation.hpp).
   bool judges_faces = false;  ///< Modules have the memory to judge free faces (free_faces.hpp).
   /// Modules have the memory for 30 planned ones, not 5 (more_planned.hpp). They have it anyway
@@ -61,11 +64,6 @@ struct SimulationOptions {
   TraceSink* trace = nullptr;  ///< Not owned; outlives the simulation.
   Tamper tamper = {};          ///< Called for every packet, if there is one: faulty modules.
 };
-
-/// The method of modules of this kind: elimination on a level floor under weight alone, from which
-/// a robot goes on at its next change, else fronts. Whoever is no robot of cubes on a floor is lent
-/// memory anyway, that for fronts too.
-agent::Method usual_method(const model::Robot& robot, const SimulationOptions& options);
 
 /// Why a simulation cannot be made (what, value found, values allowed), if it cannot.
 std::optional<std::string> find_options_fault(const model::Robot& robot,
