@@ -29,7 +29,7 @@ if [ $((text + data)) -gt $flash_max ]; then
   echo "firmware: $((text + data)) bytes of flash, allowed are $flash_max"
   fault=1
 fi
-if [ $((data + bss)) -gt $ram_max ]; then
+if [ $((data + bss)) -gt "$ram_max" ]; then
   echo "firmware: $((data + bss)) bytes of RAM, allowed are $ram_max"
   fault=1
 fi

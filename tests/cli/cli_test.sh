@@ -3,6 +3,7 @@
 set -euo pipefail
 program=$1
 repository=$2
+# shellcheck source=tests/cli/expect.sh
 . "$(dirname "${BASH_SOURCE[0]}")/expect.sh"
 
 # expect_refusal TEXT FILE   exit 65 and one clear line that names the file and says TEXT
@@ -444,12 +445,14 @@ expect_exit 64 simulate in.json --story link.json
 expect_exit 64 view in.json --no-open --out ./in.json
 expect_exit 64 emulate in.json --json in.json
 code=0
+# shellcheck disable=SC2094  # The program has to refuse it.
 "$program" check - --json in.json <in.json >out 2>err || code=$?
 [ "$code" -eq 64 ] || fault "standard input is overwritten: exit $code"
 expect_exit 64 check "$safe" --json twice --svg ./twice
 expect_line err '--json twice and --svg ./twice are one file'
 expect_exit 64 simulate "$safe" --json - --story -
 code=0
+# shellcheck disable=SC2094  # The program has to refuse it.
 "$program" check "$safe" --json shared.txt >shared.txt 2>err || code=$?
 [ "$code" -eq 64 ] || fault "standard output and --json share a file: exit $code"
 cmp -s in.json kept.json || fault "an input has changed"

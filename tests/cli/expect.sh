@@ -1,8 +1,9 @@
-# Sourced, after `program` is set, by what runs the program as its users do: a folder of its own,
-# what is expected, and how many faults there are.
+# shellcheck shell=bash
+# Sourced, after `program` is set, by tests that run the program as its users do: makes a folder
+# of its own, counts faults and checks expectations.
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-cd "$work"
+cd "$work" || exit 1
 faults=0
 
 fault() {
@@ -14,7 +15,7 @@ fault() {
 expect_exit() {
   local expected=$1 code=0
   shift
-  "$program" "$@" >out 2>err </dev/null || code=$?
+  "${program:?}" "$@" >out 2>err </dev/null || code=$?
   [ "$code" -eq "$expected" ] || fault "exit $code, expected $expected: $*: $(head -c 300 err)"
 }
 

@@ -4,6 +4,7 @@
 set -euo pipefail
 program=$1
 scenarios=$2/scenarios/plan
+# shellcheck source=tests/cli/expect.sh
 . "$(dirname "${BASH_SOURCE[0]}")/expect.sh"
 
 # expect_refusal CODE TEXT ARGUMENTS...   one clear line that says TEXT

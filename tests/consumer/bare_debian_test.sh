@@ -41,6 +41,7 @@ if ls "$packages"/holdfast-firmware_*.deb >/dev/null 2>&1; then
   install '/tmp/holdfast-firmware_*.deb'
   inside 'holdfast emulate --quiet /tmp/arm_breaks_a.json'
 else
+  # shellcheck disable=SC2016  # The shell inside expands it.
   inside 'code=0
           holdfast emulate /tmp/arm_breaks_a.json 2>/tmp/log || code=$?
           [ $code -eq 65 ]

@@ -56,8 +56,10 @@ for board in v2 v1; do
   code=0
   "$prefix/bin/holdfast" emulate --board $board "$repository/scenarios/arm_tips_a.json" \
     2>"$work/log" || code=$?
-  [ $code -eq 65 ] && grep -Eq "without Unicorn|the package holdfast-firmware" "$work/log" ||
+  if [ $code -ne 65 ] ||
+    ! grep -Eq "without Unicorn|the package holdfast-firmware" "$work/log"; then
     fault "emulate without an image: exit $code, $(cat "$work/log")"
+  fi
 done
 for file in bin/holdfast share/holdfast/structure.schema.json share/man/man1/holdfast.1.gz \
   share/man/man1/holdfast-checker.1.gz share/bash-completion/completions/holdfast \
