@@ -70,7 +70,10 @@ class Ball {
   /// Above what was rounded to this: by two units in the last place or more.
   static double upward(double value) {
     const double above = value + (std::abs(value) * (4 * kUnit) + kTiny);
-    return std::isnan(above) ? kInfinity : above;
+    if (std::isnan(above)) {
+      return kInfinity;
+    }
+    return above;
   }
 
   /// The radius has been through a few roundings of its own.

@@ -33,8 +33,9 @@ void use_large_pages() {
   mallopt(M_TRIM_THRESHOLD, -1);
   void* const heap = std::malloc(memory / 2);
   if (heap != nullptr) {
-    const std::uintptr_t begin = (reinterpret_cast<std::uintptr_t>(heap) + kPage) & ~(kPage - 1);
-    madvise(reinterpret_cast<void*>(begin), (memory / 2 & ~(kPage - 1)) - kPage, MADV_HUGEPAGE);
+    const auto address = reinterpret_cast<std::uintptr_t>(heap);
+    char* const begin = static_cast<char*>(heap) + (kPage - address % kPage);
+    madvise(begin, (memory / 2 & ~(kPage - 1)) - kPage, MADV_HUGEPAGE);
     std::free(heap);
   }
 #endif

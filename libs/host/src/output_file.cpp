@@ -93,11 +93,11 @@ class DescriptorBuffer : public std::streambuf {
 
   pos_type seekpos(pos_type position, std::ios_base::openmode /*which*/) override {
     if (!is_seekable_ || sync() != 0) {
-      return pos_type(-1);
+      return {-1};
     }
     if (::lseek(descriptor_, position, SEEK_SET) < 0) {
       error_ = errno;
-      return pos_type(-1);
+      return {-1};
     }
     position_ = position;
     return position;

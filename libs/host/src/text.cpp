@@ -13,7 +13,7 @@ bool is_zero(std::string_view text) {
   return text.find_first_not_of("-0.") == std::string_view::npos;
 }
 
-std::string without_sign_of_zero(std::string text) {
+std::string without_sign_of_zero(const std::string& text) {
   return is_zero(text) && text.starts_with('-') ? text.substr(1) : text;
 }
 

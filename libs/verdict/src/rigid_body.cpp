@@ -91,6 +91,7 @@ std::vector<Point> support_corners(const model::Robot& robot) {
     add_row({.y = y, .first = x, .last = x}, rows);
   }
   std::vector<Row> mine;
+  mine.reserve(rows.size());
   for (const auto& [y, row] : rows) {
     mine.push_back(row);
   }

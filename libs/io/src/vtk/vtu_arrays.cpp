@@ -18,7 +18,7 @@ static_assert(std::endian::native == std::endian::little);
 
 /// The size of a block before it is compressed: a window of them takes a few megabytes. A multiple
 /// of all tuples, which have 1, 4, 8, 12 or 24 bytes.
-constexpr std::size_t kBlockBytes = 192 * 1024;
+constexpr std::size_t kBlockBytes = std::size_t{192} * 1024;
 
 /// Digits of the largest offset.
 constexpr std::size_t kOffsetWidth = 20;
