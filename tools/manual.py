@@ -2,15 +2,17 @@
 # SPDX-FileCopyrightText: The holdfast authors
 # SPDX-License-Identifier: Apache-2.0
 """manual.py PROGRAM CHECKER FOLDER [--mpi MPI_PROGRAM] [--check]   writes the man pages of the
-programs, and of the first the completions for bash, zsh and fish, from what their --help says; that
-of holdfast-mpi only if it is given, as not every build has it. With --check nothing is written;
-exits 1 if a file in FOLDER is not what would be written."""
+programs, one for each command of the first, and its completions for bash, zsh and fish, from what
+--help says; that of holdfast-mpi only if it is given, as not every build has it. With --check
+nothing is written; exits 1 if a file in FOLDER is not what would be written."""
 import pathlib
 import re
 import subprocess
 import sys
 
-SECTIONS = {'Positionals': 'ARGUMENTS', 'Options': 'OPTIONS', 'Subcommands': 'COMMANDS'}
+# The titles of lists, as holdfast and as CLI11 by itself (holdfast-mpi) write them.
+SECTIONS = {'Arguments': 'ARGUMENTS', 'Positionals': 'ARGUMENTS', 'Options': 'OPTIONS',
+            'Commands': 'COMMANDS', 'Subcommands': 'COMMANDS'}
 FILE_TYPES = {'FILE', 'FOLDER', 'FROM', 'START', 'STEPS.json', 'TARGET', 'TO'}
 CHECKER = 'holdfast-checker'
 MPI = 'holdfast-mpi'
@@ -20,8 +22,9 @@ class Entry:
     """A line of a list: an option, an argument or a command."""
 
     def __init__(self, head, text):
-        self.names = [name for name in head.split()[0].split(',')]
-        self.rest = head.split()[1:]  # What stands behind the names: type, default, REQUIRED, ...
+        words = head.replace(', -', ',-').split()
+        self.names = words[0].split(',')
+        self.rest = words[1:]  # What stands behind the names: type, REQUIRED, ...
         self.text = text
         self.values = []  # All that are allowed, where they are words.
 
@@ -47,24 +50,35 @@ class Page:
 
     def __init__(self, text):
         head, _, tail = text.partition('\nUsage: ')
-        self.summary = head.strip()
+        self.summary = ' '.join(head.split()).rstrip('.')
         self.usage, _, tail = tail.partition('\n')
         self.lists = {}
-        blocks = tail.strip('\n').split('\n\n')
-        while blocks and blocks[0].split(':\n')[0] in SECTIONS:
-            title, _, lines = blocks.pop(0).partition(':\n')
-            self.lists[title] = entries_of(lines)
-        self.footer = '\n\n'.join(blocks)
+        self.examples = self.exits = ''
+        notes = []
+        for block in tail.strip('\n').split('\n\n'):
+            title, _, lines = block.strip('\n').partition(':\n')
+            if title in SECTIONS:
+                self.lists[SECTIONS[title]] = entries_of(lines)
+            elif title == 'Examples':
+                self.examples = lines
+            elif title == 'Exit status':
+                self.exits = lines
+            else:
+                notes.append(block)
+        self.notes = '\n\n'.join(notes)
 
     def options(self):
-        return self.lists.get('Options', [])
+        return self.lists.get('OPTIONS', [])
 
     def arguments(self):
-        return self.lists.get('Positionals', [])
+        return self.lists.get('ARGUMENTS', [])
+
+    def commands(self):
+        return self.lists.get('COMMANDS', [])
 
 
 def entries_of(lines):
-    """Heads stand in column 2, texts in column 30, on the next line if the head is long."""
+    """Heads stand in column 2, texts further right, on the next line if the head is long."""
     entries = []
     for line in lines.split('\n'):
         if line.startswith(' ' * 10):
@@ -82,16 +96,16 @@ def output_of(*command):
 
 def ask_values(program, command, entry):
     """The program names the words that it allows when it is given another."""
-    if entry.type == 'NAME':
+    if entry.type in ('NAME', 'free|line|surface'):
         said = output_of(program, command, entry.names[-1], '?', '-')
-        words = re.search(r'not in \{(.*)\}', said)
-        entry.values = words[1].split(',') if words else []
+        words = re.search(r': expected (.*), found ', said)
+        entry.values = re.split(', | or ', words[1]) if words else []
 
 
 def read_pages(program):
     """The --help of the program itself and of its commands, by their names."""
     pages = {'': Page(output_of(program, '--help'))}
-    for command in pages[''].lists['Subcommands']:
+    for command in pages[''].commands():
         pages[command.names[0]] = Page(output_of(program, command.names[0], '--help'))
     return pages
 
@@ -127,18 +141,49 @@ def roff_preformatted(text):
     return f'.PP\n.nf\n{roff(text)}\n.fi\n' if text else ''
 
 
-def man_page(name, summary, pages, version, other):
-    main = pages['']
-    text = roff_head(name, version, summary)
-    text += f'.SH SYNOPSIS\n.B {roff(name)}\nCOMMAND [OPTIONS] ARGUMENTS\n'
-    text += f'.SH DESCRIPTION\n{roff(main.summary)}\n'
-    text += roff_preformatted(main.footer)
-    text += f'.SH OPTIONS\n{roff_list(main.options())}.SH COMMANDS\n'
-    for command in main.lists['Subcommands']:
-        page = pages[command.names[0]]
-        text += f'.SS {roff(page.usage)}\n{roff(page.summary)}.\n'
-        text += roff_list(page.arguments()) + roff_list(page.options())
-        text += roff_preformatted(page.footer)
+def roff_section(title, text):
+    return f'.SH {title}\n{text}' if text else ''
+
+
+def roff_lists(page):
+    return (roff_section('ARGUMENTS', roff_list(page.arguments())) +
+            roff_section('OPTIONS', roff_list(page.options())))
+
+
+def command_page(program, name, page, version):
+    """The man page of one command, as holdfast-check.1."""
+    text = roff_head(f'{program}-{name}', version, page.summary[0].lower() + page.summary[1:])
+    text += f'.SH SYNOPSIS\n.B {roff(page.usage)}\n.SH DESCRIPTION\n{roff(page.summary)}.\n'
+    text += roff_preformatted(page.notes) + roff_lists(page)
+    text += roff_section('EXAMPLES', roff_preformatted(page.examples))
+    text += roff_section('EXIT STATUS', roff_preformatted(page.exits))
+    return text + f'.SH SEE ALSO\n.BR {roff(program)} (1)\n'
+
+
+def main_page(program, summary, pages, version, others):
+    """The man page of a program whose commands have pages of their own."""
+    page = pages['']
+    text = roff_head(program, version, summary)
+    text += f'.SH SYNOPSIS\n.B {roff(program)}\nCOMMAND [OPTIONS] ARGUMENTS\n'
+    text += f'.SH DESCRIPTION\n{roff(page.summary)}.\n' + roff_preformatted(page.notes)
+    text += roff_section('COMMANDS', roff_list(page.commands())) + roff_lists(page)
+    text += roff_section('EXAMPLES', roff_preformatted(page.examples))
+    names = [f'{program}-{command.names[0]}' for command in page.commands()] + others
+    return text + '.SH SEE ALSO\n' + ',\n'.join(f'.BR {roff(name)} (1)' for name in names) + '\n'
+
+
+def whole_page(program, summary, pages, version, other):
+    """One man page for a program and its commands."""
+    page = pages['']
+    text = roff_head(program, version, summary)
+    text += f'.SH SYNOPSIS\n.B {roff(program)}\nCOMMAND [OPTIONS] ARGUMENTS\n'
+    text += f'.SH DESCRIPTION\n{roff(page.summary)}\n' + roff_preformatted(page.notes)
+    text += roff_section('OPTIONS', roff_list(page.options())) + '.SH COMMANDS\n'
+    for command in page.commands():
+        one = pages[command.names[0]]
+        text += f'.SS {roff(one.usage)}\n{roff(one.summary)}.\n'
+        text += roff_list(one.arguments()) + roff_list(one.options())
+        text += roff_preformatted(one.notes)
     return text + f'.SH SEE ALSO\n.BR {roff(other)} (1)\n'
 
 
@@ -219,7 +264,7 @@ def zsh_argument(entry):
 def zsh_completion(pages):
     commands = ''
     cases = ''
-    for command in pages[''].lists['Subcommands']:
+    for command in pages[''].commands():
         name = command.names[0]
         commands += f"        '{name}:{zsh_quoted(command.text)}'\n"
         lines = ''.join(zsh_option(entry) for entry in pages[name].options())
@@ -271,7 +316,7 @@ def fish_completion(pages):
             'complete -c holdfast -n __fish_use_subcommand -f\n')
     for entry in pages[''].options():
         text += fish_option('__fish_use_subcommand', entry)
-    for command in pages[''].lists['Subcommands']:
+    for command in pages[''].commands():
         name = command.names[0]
         text += (f'complete -c holdfast -n __fish_use_subcommand -a {name} '
                  f'-d {fish_quoted(command.text)}\n')
@@ -287,15 +332,17 @@ def main():
     program, checker, folder = sys.argv[1:4]
     pages = read_pages_with_values(program)
     version = output_of(program, '--version').split()[1]
-    files = {'holdfast.1': man_page('holdfast', 'will a modular robot hold?', pages, version,
-                                    CHECKER),
+    files = {'holdfast.1': main_page('holdfast', 'will a modular robot hold?', pages, version,
+                                     [CHECKER]),
+             **{f'holdfast-{name}.1': command_page('holdfast', name, page, version)
+                for name, page in pages.items() if name},
              f'{CHECKER}.1': checker_page(output_of(checker, '--help'), version),
              'holdfast.bash': bash_completion(pages),
              '_holdfast': zsh_completion(pages),
              'holdfast.fish': fish_completion(pages)}
     if '--mpi' in sys.argv:
         mpi = sys.argv[sys.argv.index('--mpi') + 1]
-        files[f'{MPI}.1'] = man_page(
+        files[f'{MPI}.1'] = whole_page(
             MPI, 'will a modular robot hold that is too large for one machine?', read_pages(mpi),
             output_of(mpi, '--version').split()[1], 'holdfast')
     stale = []

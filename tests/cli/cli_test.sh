@@ -47,9 +47,9 @@ expect_exit 0 generate arm 29 -o long.json
 expect_exit 1 next long.json --quiet
 expect_exit 64 next "$safe" --json same --svg same
 expect_exit 64 chekc "$safe"
-expect_line err "no command 'chekc', but check steps next"
+expect_line err "no command 'chekc'; did you mean 'check'"
 expect_exit 64 check "$safe" --json ''
-expect_line err '^--json: the value is empty$'
+expect_line err '^holdfast check: --json: the value is empty$'
 expect_exit 65 next missing.json
 
 # Proofs: arm_breaks_b carries 1.200397996 (tests/reference), arm_breaks_a 0.6402122645.
@@ -314,22 +314,53 @@ expect_exit 64 generate cube 1000000
 expect_exit 0 generate --help
 expect_line out 'scaffold'
 
-# Wrong usage.
+# Wrong usage: what is wrong, and where help is; slips are seen.
 expect_exit 64
-expect_exit 64 chek
-expect_exit 64 check
+expect_line err '^Usage: holdfast '
+expect_usage() {
+  local text=$1
+  shift
+  expect_exit 64 "$@"
+  [ "$(wc -l <err)" -le 2 ] || fault "$*: more than two lines: $(head -c 400 err)"
+  expect_line err "$text"
+}
+expect_usage "^holdfast: there is no command 'chek'; did you mean 'check'\?\$" chek
+expect_usage "^holdfast: there is no command 'x'; there are help, check, steps, " x
+expect_usage "^holdfast: there is no command 'ordr'; did you mean 'order'" help ordr
+expect_usage "^holdfast check: FILE is required\$" check
+expect_usage "^Try 'holdfast check --help'\.\$" check
+expect_usage "^holdfast check: there is no option '--jsn'; did you mean '--json'\?\$" check a --jsn b
+expect_usage "^holdfast check: there is no option '--x'\$" check a --x=1
+expect_usage "^holdfast next: the argument 'b' is not expected\$" next a b
+expect_usage "^holdfast check: --json has no value, expected FILE\$" check a --json
+expect_usage "^holdfast check: --memory: expected a number from 0.01 to 1024, found 0\$" \
+  check a --memory 0
+expect_usage "^holdfast check: --threads: expected a number from 0 to 64, found two\$" check a --threads two
+expect_usage "--link: expected v1, v2, catoms or unit, found 'v3'" simulate a --link v3
+expect_usage "--reach: expected free, line or surface, found 'srface'; did you mean 'surface'" \
+  order a --reach srface
+expect_usage '^holdfast steps: --.* and --.* exclude each other$' steps a --verify --json b
 expect_exit 64 check "$safe" "$overload" --svg picture.svg
 expect_exit 0 --help
-expect_line out 'check'
-for command in check steps next order move simulate emulate convert generate view; do
+expect_line out '^  check  '
+cp out help.txt
+expect_exit 0 help
+cmp -s out help.txt || fault "holdfast help is not holdfast --help"
+for command in check steps next order move simulate emulate convert generate robots view; do
   expect_exit 0 "$command" --help
-  expect_line out 'Exit.*: 0 '
-  for code in 64 65 70; do
-    tr '\n' ' ' <out | grep -Eq "Exit.*[ ,(]$code " || fault "$command --help does not say $code"
+  expect_line out "^Usage: holdfast $command "
+  expect_line out "^  holdfast $command "
+  for code in ' 0' 64 65 70; do
+    sed -n '/^Exit status:/,$p' out | grep -q "^  $code  " ||
+      fault "$command --help does not say $code"
   done
+  [ "$(wc -L <out)" -le 80 ] || fault "$command --help: a line of $(wc -L <out) columns"
+  cp out help.txt
+  expect_exit 0 help "$command"
+  cmp -s out help.txt || fault "holdfast help $command is not holdfast $command --help"
 done
-expect_exit 0 check --help
-expect_line out '64 wrong usage'
+expect_exit 0 -V
+expect_line out "^holdfast [0-9]+\.[0-9]+\.[0-9]+$"
 expect_exit 0 --version
 expect_line out "^holdfast [0-9]+\.[0-9]+\.[0-9]+$"
 
@@ -467,7 +498,7 @@ for command in check steps simulate emulate next order move; do
     *) arguments=$overload ;;
   esac
   options=$("$program" "$command" --help |
-    sed -nE 's/^  (-o,)?(--(json|csv|svg|vtk|html|certificate|trace|story|output)) FILE.*/\2/p')
+    sed -nE 's/^  (-o, )?(--(json|csv|svg|vtk|html|certificate|trace|story|output)) FILE.*/\2/p')
   [ -n "$options" ] || fault "$command: its help names no output"
   for option in $options; do
     # shellcheck disable=SC2086

@@ -22,7 +22,7 @@ complete_words() {
 
 # options_of COMMAND   the long options in its --help
 options_of() {
-  "$program" "$1" --help | sed -n 's/^  \(-[a-z],\)\{0,1\}\(--[a-z-]*\).*/\2/p'
+  "$program" "$1" --help | sed -n 's/^  \(-[a-zA-Z], \)\{0,1\}\(--[a-z-]*\).*/\2/p'
 }
 
 # offers SHELL COMMAND OPTION TEXT PATTERN   the shell's TEXT holds PATTERN
@@ -30,7 +30,7 @@ offers() { grep -q -e "$5" <<<"$4" || fault "$1 does not complete $2 $3"; }
 
 # shellcheck source=/dev/null
 . "$folder/holdfast.bash"
-commands=$("$program" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z]*\)  .*/\1/p')
+commands=$("$program" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z]*\)  .*/\1/p')
 [ "$(wc -w <<<"$commands")" -ge 6 ] || fault "only these commands are listed: $commands"
 count=0
 for command in $commands; do

@@ -4,7 +4,7 @@ _holdfast() {
   local words='' files=''
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
-    mapfile -t COMPREPLY < <(compgen -W "check steps next order move simulate emulate convert generate robots view -h --help --version" -- "$current")
+    mapfile -t COMPREPLY < <(compgen -W "check steps next order move simulate emulate convert generate robots view -h --help -V --version" -- "$current")
     return
   fi
   case ${COMP_WORDS[1]} in
@@ -33,8 +33,6 @@ _holdfast() {
         --svg) files=1 ;;
         --html) files=1 ;;
         --vtk) files=1 ;;
-        --until-unsafe) : ;;
-        --verify) : ;;
         --threads) : ;;
         *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --allow-unknown --json --svg --html --vtk --until-unsafe --verify -q --quiet --threads"; else files=1; fi ;;
       esac
@@ -54,7 +52,7 @@ _holdfast() {
     order)
       case $previous in
         --from) files=1 ;;
-        --reach) : ;;
+        --reach) words="free line surface" ;;
         --source) : ;;
         --group) : ;;
         --seed) : ;;

@@ -325,12 +325,19 @@ Command add_check(CLI::App& app) {
                    "Most memory for the solver, GB; a robot that needs more is undecided")
       ->check(number_between(0.01, 1024.0))
       ->capture_default_str();
-  command->footer(
-      "Verdicts: safe, overload (a connection breaks), unstable (topples), undecided.\n"
-      "Exit: 0 all safe, 1 any unsafe, else 2 any undecided; before these 64 wrong usage, 65 any\n"
-      "bad input or not writable, 70 out of memory. Notes of the reader always go to standard "
-      "error.");
-  return {command, [options] { return run(*options); }};
+  return {command,
+          [options] { return run(*options); },
+          {.examples = {{"check arm.json", "is it safe, and which connection carries most?"},
+                        {"check arm.json --svg arm.svg", "draw the loads"},
+                        {"check *.json --quiet", "the exit status is the answer"},
+                        {"check robot.xml --robot blinky-blocks --json -", "a report to read on"}},
+           .notes = "Verdicts: safe, overload (a connection breaks), unstable (the robot "
+                    "topples), undecided. Errors take precedence over verdicts. Notes of the "
+                    "reader always go to standard error.",
+           .exits = {{kExitSafe, "all structures are safe"},
+                     {kExitUnsafe, "any structure is unsafe: overload or unstable"},
+                     {kExitUndecided, "none is unsafe, but any is undecided"},
+                     {kExitBadInput, "an input cannot be read, or an output not written"}}}};
 }
 
 }  // namespace holdfast::cli

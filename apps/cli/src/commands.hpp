@@ -14,6 +14,7 @@
 #include <string>
 #include <string_view>
 
+#include "help.hpp"
 #include "holdfast/exit_code.hpp"
 #include "holdfast/holdfast.hpp"
 #include "holdfast/trial.hpp"
@@ -25,6 +26,7 @@ namespace holdfast::cli {
 struct Command {
   CLI::App* app = nullptr;
   std::function<int()> run;
+  Help help;
 };
 
 Command add_check(CLI::App& app);

@@ -99,13 +99,17 @@ Command add_convert(CLI::App& app) {
   add_required(*command, "TO", options->to,
                "File to write; .xml, .json or .holdfast says the format");
   add_reading(*command, options->reading);
-  command->footer(
-      "Kept are modules, steps, parameters, obstacles, loads, colours and all of VisibleSim's own\n"
-      "attributes; not kept are comments and the layout of the text. A binary structure, "
-      ".holdfast,\n"
-      "is small and quick to read; it has what check needs, and a note says what it leaves out.\n"
-      "Exit: 0 written, 64 wrong usage, 65 bad input or not writable, 70 out of memory.");
-  return {command, [options] { return run(*options); }};
+  return {command,
+          [options] { return run(*options); },
+          {.examples = {{"convert robot.xml robot.json", "from VisibleSim to holdfast JSON"},
+                        {"convert robot.json robot.xml", "and back"},
+                        {"convert robot.json robot.holdfast", "small and quick to read"}},
+           .notes = "Modules, steps, parameters, obstacles, loads, colours and all of "
+                    "VisibleSim's own attributes are kept; comments and the layout of the text "
+                    "are not. A binary structure, .holdfast, has what check needs; a note says "
+                    "what it leaves out.",
+           .exits = {{0, "the file is written"},
+                     {kExitBadInput, "the input cannot be read, or the output not written"}}}};
 }
 
 }  // namespace holdfast::cli

@@ -192,7 +192,7 @@ Command add_emulate(CLI::App& app) {
                    "Only write the page of flash of every module, module_0.bin and so on, for a "
                    "programmer")
       ->type_name("FOLDER");
-  add_seed(*command, options->seed, "Of everything random").capture_default_str();
+  add_seed(*command, options->seed, "Seed of all that is random").capture_default_str();
   add_fault_options(*command, options->faults);
   add_change_options(*command, options->changes, "s");
   command->add_option("--time", options->time_max_s, "Give up after so long (s on the robot)")
@@ -205,13 +205,20 @@ Command add_emulate(CLI::App& app) {
   command->add_option("--svg", options->svg, "Draw the robot in the colours that its lamps show")
       ->type_name("FILE");
   add_quiet(*command, options->is_quiet);
-  command->footer(
-      "The exact answer stands beside the robot's own: with --plan, --withdraw and --attach that "
-      "for\n"
-      "the robot and what is planned in the end. Nothing is told before 0.4 s after the start.\n"
-      "Exit, by the robot's verdict: 0 safe, 1 overload or unstable, 2 undecided, 64 wrong usage,\n"
-      "65 bad input, not writable, no firmware, or a program without Unicorn, 70 out of memory.");
-  return {command, [options] { return EmulateRun(*options).run(); }};
+  return {command,
+          [options] { return EmulateRun(*options).run(); },
+          {.examples = {{"emulate arm.json", "what does the firmware say, and when?"},
+                        {"emulate arm.json --board v1", "with the lines of Blinky Blocks 1"},
+                        {"emulate arm.json --pages flash", "only write the modules' pages"}},
+           .notes = "The exact answer stands beside the robot's own; with --plan, --withdraw "
+                    "and --attach it is that for the robot and what is planned in the end. "
+                    "Modules are told of nothing in the first 0.4 s.",
+           .exits = {{kExitSafe, "the robot says safe"},
+                     {kExitUnsafe, "the robot says overload or unstable"},
+                     {kExitUndecided, "the robot says undecided"},
+                     {kExitBadInput,
+                      "an input cannot be read, an output not written, there is "
+                      "no firmware, or the program was built without Unicorn"}}}};
 }
 
 }  // namespace holdfast::cli

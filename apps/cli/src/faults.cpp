@@ -4,27 +4,12 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <iterator>
+
+#include "cell_text.hpp"
 
 namespace holdfast::cli {
 namespace {
-
-template <class Number>
-bool take_number(std::string_view& text, Number& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc()) {
-    return false;
-  }
-  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-  return true;
-}
-
-bool take_mark(std::string_view& text, char mark) {
-  const bool is_there = text.starts_with(mark);
-  text.remove_prefix(is_there ? 1 : 0);
-  return is_there;
-}
 
 std::optional<base::Direction> find_direction(std::string_view& text) {
   constexpr std::string_view kNames[] = {"+x", "-x", "+y", "-y", "+z", "-z"};
@@ -35,11 +20,6 @@ std::optional<base::Direction> find_direction(std::string_view& text) {
     }
   }
   return std::nullopt;
-}
-
-bool take_cell(std::string_view& text, base::Cell& cell) {
-  return take_number(text, cell.x) && take_mark(text, ',') && take_number(text, cell.y) &&
-         take_mark(text, ',') && take_number(text, cell.z);
 }
 
 /// "@T", and nothing behind it.

@@ -45,20 +45,23 @@ Command add_generate(CLI::App& app) {
   auto options = std::make_shared<GenerateArguments>();
   CLI::App* command = app.add_subcommand(
       "generate", "Write one of the structures in which solvers are compared, of any size");
-  add_required(*command, "FAMILY", options->family, "Its name, see below");
-  add_required(*command, "SIZE", options->size, "How large, see below");
+  add_required(*command, "FAMILY", options->family, "One of the families below");
+  add_required(*command, "SIZE", options->size, "How large; see the families below");
   command
       ->add_option("-o,--output", options->to,
                    "File to write, .json, .xml or .holdfast; - is standard output")
       ->type_name("FILE");
-  std::string footer = "Families:\n";
+  std::string notes = "Families:\n";
   for (const auto& [name, help] : family_list()) {
-    footer += fmt::format("  {:<12}{}\n", name, help);
+    notes += fmt::format("  {:<12}{}\n", name, help);
   }
-  command->footer(footer +
-                  "All stand on z = 0.\n"
-                  "Exit: 0 written, 64 wrong usage, 65 not writable, 70 out of memory.");
-  return {command, [options] { return run(*options); }};
+  return {command,
+          [options] { return run(*options); },
+          {.examples = {{"generate bridge 40 -o bridge.json", "a bridge of 40 cells"},
+                        {"generate ball 9 | holdfast check -", "judge one at once"}},
+           .notes = notes + "\nAll stand on z = 0.",
+           .exits = {{0, "the structure is written"},
+                     {kExitBadInput, "the output cannot be written"}}}};
 }
 
 }  // namespace holdfast::cli

@@ -3,36 +3,42 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <memory>
 #include <new>
 #include <stdexcept>
 #include <string>
 #include <system_error>
 
 #include "commands.hpp"
+#include "help.hpp"
 #include "holdfast/holdfast.hpp"
 
 namespace {
 
 namespace cli = holdfast::cli;
 
-/// What to say where the first argument is neither an option nor a command; else empty.
-std::string unknown_command(const CLI::App& app, int argc, char** argv) {
-  const std::string argument = argc > 1 ? argv[1] : "";
-  if (argument.empty() || argument.starts_with('-')) {
-    return {};
+/// Whether the program knows a command of this name.
+bool is_command(const CLI::App& app, const std::string& name) {
+  const auto commands = app.get_subcommands({});
+  return std::ranges::any_of(commands,
+                             [&](const CLI::App* command) { return command->check_name(name); });
+}
+
+/// holdfast help [COMMAND].
+int show_help(const CLI::App& app, int argc, char** argv) {
+  const std::string name = argc > 2 ? argv[2] : "";
+  if (!name.empty() && !is_command(app, name)) {
+    std::fputs(cli::unknown_command(app, name).c_str(), stderr);
+    return holdfast::kExitUsage;
   }
-  std::string text = "holdfast: there is no command '" + argument + "', but";
-  for (const CLI::App* command : app.get_subcommands({})) {
-    if (command->check_name(argument)) {
-      return {};
-    }
-    text += " " + command->get_name();
-  }
-  return text + "\n";
+  const CLI::App& command = name.empty() ? app : *app.get_subcommand(name);
+  std::fputs(command.help().c_str(), stdout);
+  return 0;
 }
 
 /// An empty value, such as that of a shell's variable that is not set, names no file and nothing
@@ -51,20 +57,44 @@ void refuse_empty_values(CLI::App& app) {
 
 int run(int argc, char** argv) {
   CLI::App app(
-      "Will it hold? Predicts whether a modular robot breaks or topples when modules are attached.",
+      "Will it hold? Predicts whether a modular robot breaks or topples when modules are attached",
       "holdfast");
-  app.set_version_flag("--version", "holdfast " + std::string(holdfast::version()));
+  const auto formatter = std::make_shared<cli::HelpFormatter>();
+  formatter->label("SUBCOMMAND", "COMMAND");
+  app.formatter(formatter);
+  app.set_version_flag("-V,--version", "holdfast " + std::string(holdfast::version()),
+                       "Print the version and exit");
   app.require_subcommand(1);
-  app.footer("holdfast COMMAND --help says more about a command.");
   const cli::Command commands[] = {
       cli::add_check(app),    cli::add_steps(app),    cli::add_next(app),    cli::add_order(app),
       cli::add_move(app),     cli::add_simulate(app), cli::add_emulate(app), cli::add_convert(app),
       cli::add_generate(app), cli::add_robots(app),   cli::add_view(app)};
+  for (const cli::Command& command : commands) {
+    formatter->set(command.app, command.help);
+  }
+  formatter->set(&app,
+                 {.examples = {{"check arm.json", "will it hold?"},
+                               {"view arm.json", "look at it and change it"},
+                               {"help check", "all that check can do"}},
+                  .notes = "holdfast help COMMAND, or holdfast COMMAND --help, says more about a "
+                           "command.",
+                  .exits = {}});
   refuse_empty_values(app);
-  if (const std::string fault = unknown_command(app, argc, argv); !fault.empty()) {
-    std::fputs(fault.c_str(), stderr);
+  const std::string first = argc > 1 ? argv[1] : "";
+  if (first == "help") {
+    return show_help(app, argc, argv);
+  }
+  if (first.empty()) {
+    std::fputs(app.help().c_str(), stderr);
     return holdfast::kExitUsage;
   }
+  if (!first.starts_with('-') && !is_command(app, first)) {
+    std::fputs(cli::unknown_command(app, first).c_str(), stderr);
+    return holdfast::kExitUsage;
+  }
+  app.failure_message([](const CLI::App* asked, const CLI::Error& error) {
+    return cli::usage_error(*asked, error);
+  });
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

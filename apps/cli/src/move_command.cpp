@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <memory>
 
+#include "cell_text.hpp"
 #include "commands.hpp"
 #include "file_clash.hpp"
 #include "holdfast/move.hpp"
@@ -38,23 +38,14 @@ struct MoveArguments {
 };
 
 /// The box that "X,Y,Z:X,Y,Z" says, by its two corners in any order; none if it is no box.
-std::optional<plan::CellBox> box_of(const std::string& text) {
-  std::array<std::int32_t, 6> numbers{};
-  const std::string_view separators = ",,:,,";
-  const char* next = text.data();
-  const char* const end = text.data() + text.size();
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const auto read = std::from_chars(next, end, numbers[i]);
-    const bool is_last = i == separators.size();
-    if (read.ec != std::errc{} ||
-        (is_last ? read.ptr != end : read.ptr == end || *read.ptr != separators[i])) {
-      return std::nullopt;
-    }
-    next = is_last ? read.ptr : read.ptr + 1;
+std::optional<plan::CellBox> box_of(std::string_view text) {
+  base::Cell a;
+  base::Cell b;
+  if (!take_cell(text, a) || !take_mark(text, ':') || !take_cell(text, b) || !text.empty()) {
+    return std::nullopt;
   }
-  const auto [ax, ay, az, bx, by, bz] = numbers;
-  return plan::CellBox{.low = {std::min(ax, bx), std::min(ay, by), std::min(az, bz)},
-                       .high = {std::max(ax, bx), std::max(ay, by), std::max(az, bz)}};
+  return plan::CellBox{.low = {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
+                       .high = {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}};
 }
 
 int outcome_code(plan::MoveOutcome outcome) {
@@ -215,16 +206,22 @@ Command add_move(CLI::App& app) {
                    "and ways to go")
       ->type_name("FILE");
   add_reading(*command, options->reading);
-  command->footer(
-      "A module slides along its neighbours or turns around a corner, while all others stay in "
-      "one\n"
-      "piece; every stage is checked as holdfast steps does it, and what is undecided is not "
-      "safe.\n"
-      "The first interrupt ends the search and leaves what it has.\n"
-      "Exit: 0 found, or proved again, 1 there is none, 2 not found, 64 wrong "
-      "usage,\n"
-      "65 bad input, not writable or not proved, 70 out of memory.");
-  return {command, [options] { return run(*options); }};
+  return {command,
+          [options] { return run(*options); },
+          {.examples = {{"move line.json bridge.json", "how does the robot get there?"},
+                        {"move line.json bridge.json -o plan.json",
+                         "keep the moves, for holdfast steps and view"},
+                        {"move a.json b.json --pivot", "cubes turn about their edges"}},
+           .notes = "A module slides along its neighbours or turns around a corner, while all "
+                    "others stay in one piece. Every stage is checked as by holdfast steps; "
+                    "one that is undecided does not count as safe. The first interrupt ends "
+                    "the search and keeps what it has found.",
+           .exits = {{kExitSafe, "moves are found, or the certificate is verified"},
+                     {kExitUnsafe, "there are no moves"},
+                     {kExitUndecided, "no moves are found"},
+                     {kExitBadInput,
+                      "an input cannot be read, an output not written, or the "
+                      "certificate is not verified"}}}};
 }
 
 }  // namespace holdfast::cli

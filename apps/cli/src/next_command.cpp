@@ -110,12 +110,18 @@ Command add_next(CLI::App& app) {
   command->add_option("--memory", options->memory_gb, "Most memory for the solver, GB")
       ->check(number_between(0.01, 1024.0))
       ->capture_default_str();
-  command->footer(
-      "Places are listed best first: the safe by ascending load ratio, then undecided, overload\n"
-      "and unstable ones. Verdicts are those of holdfast check with a planned module there.\n"
-      "Exit: 0 a place is safe, 1 none is, 2 none is known to be, as some are undecided, 64 wrong\n"
-      "usage, 65 bad input or not writable, 70 out of memory.");
-  return {command, [options] { return run(*options); }};
+  return {command,
+          [options] { return run(*options); },
+          {.examples = {{"next arm.json", "where may the next module go?"},
+                        {"next arm.json --limit 5", "the five best places"},
+                        {"next arm.json --svg places.svg", "draw every place"}},
+           .notes = "Places are listed best first: the safe ones by ascending load ratio, then "
+                    "undecided, overload and unstable ones. A place has the verdict of holdfast "
+                    "check with a planned module there.",
+           .exits = {{kExitSafe, "a place is safe"},
+                     {kExitUnsafe, "no place is safe"},
+                     {kExitUndecided, "no place is known to be safe, but some are undecided"},
+                     {kExitBadInput, "an input cannot be read, or an output not written"}}}};
 }
 
 }  // namespace holdfast::cli

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
 #include <filesystem>
 #include <memory>
 #include <string_view>
 
+#include "cell_text.hpp"
 #include "commands.hpp"
 #include "file_clash.hpp"
 #include "holdfast/move.hpp"
@@ -43,23 +43,6 @@ struct OrderArguments {
             {"--certificate", certificate, FileFormat::kJson}};
   }
 };
-
-/// The cell that "X,Y,Z" says; none if it is no cell.
-std::optional<base::Cell> cell_of(const std::string& text) {
-  std::array<std::int32_t, 3> triple{};
-  const char* next = text.data();
-  const char* const end = text.data() + text.size();
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto read = std::from_chars(next, end, triple[i]);
-    const bool is_last = i == 2;
-    if (read.ec != std::errc{} ||
-        (is_last ? read.ptr != end : read.ptr == end || *read.ptr != ',')) {
-      return std::nullopt;
-    }
-    next = is_last ? read.ptr : read.ptr + 1;
-  }
-  return base::Cell{triple[0], triple[1], triple[2]};
-}
 
 /// All cells of a document that is to be the start.
 base::Result<std::vector<base::Cell>> start_cells(const OrderArguments& options,
@@ -106,7 +89,7 @@ OrderRequest request_of(const OrderArguments& options, Progress& progress) {
                        : options.reach == "surface" ? plan::Reach::kSurface
                                                     : plan::Reach::kFree;
   if (!options.source.empty()) {
-    request.rule.source = cell_of(options.source);
+    request.rule.source = read_cell(options.source);
   }
   request.progress = [&progress](std::size_t states, std::size_t here, std::size_t furthest) {
     progress.show([&] {
@@ -215,7 +198,7 @@ void add_ways(CLI::App& command, OrderArguments& options) {
   command.add_option("--source", options.source, "Where modules come from along the surface")
       ->type_name("X,Y,Z")
       ->check([](const std::string& text) {
-        return cell_of(text) ? "" : "expected a cell, such as 3,0,0";
+        return read_cell(text) ? "" : "expected a cell, such as 3,0,0";
       });
   command
       .add_option("--group", options.group_size,
@@ -285,12 +268,22 @@ Command add_order(CLI::App& app) {
                    "it")
       ->type_name("FILE");
   add_reading(*command, options->reading);
-  command->footer(
-      "Every state on the way is checked as holdfast check does it; one that is undecided is not\n"
-      "safe. The first interrupt ends the search and leaves what it has.\n"
-      "Exit: 0 found, 1 there is none, 2 not found before time, an interrupt or undecided states\n"
-      "ended the search, 64 wrong usage, 65 bad input or not writable, 70 out of memory.");
-  return {command, [options] { return run(*options); }};
+  return {command,
+          [options] { return run(*options); },
+          {.examples = {{"order arch.json", "in which order can it be built?"},
+                        {"order arch.json --from pier.json -o plan.json",
+                         "go on from what stands already, and keep the order"},
+                        {"order arch.json --reverse", "take it apart"},
+                        {"order arch.json --reach line", "modules come straight in"}},
+           .notes = "Every state on the way is checked as by holdfast check; one that is "
+                    "undecided does not count as safe. The first interrupt ends the search and "
+                    "keeps what it has found.",
+           .exits = {{kExitSafe, "an order is found"},
+                     {kExitUnsafe, "there is no order"},
+                     {kExitUndecided,
+                      "no order is found: time, an interrupt or undecided "
+                      "states ended the search"},
+                     {kExitBadInput, "an input cannot be read, or an output not written"}}}};
 }
 
 }  // namespace holdfast::cli

@@ -104,10 +104,14 @@ Command add_robots(CLI::App& app) {
       ->add_option("--json", options->json,
                    "Write all figures and sources as JSON; - is standard output")
       ->type_name("FILE");
-  command->footer(
-      "A structure takes the figures of one of them by \"robot\": NAME, or by check --robot NAME.\n"
-      "Exit: 0 shown, 64 wrong usage, 65 not writable.");
-  return {command, [options] { return run(*options); }};
+  return {
+      command,
+      [options] { return run(*options); },
+      {.examples = {{"robots", "which robots are known?"},
+                    {"robots blinky-blocks", "one of them, with its sources"}},
+       .notes = "A structure takes the figures of one of them by \"robot\": NAME, or by "
+                "holdfast check --robot NAME.",
+       .exits = {{0, "the robots are shown"}, {kExitBadInput, "the output cannot be written"}}}};
 }
 
 }  // namespace holdfast::cli

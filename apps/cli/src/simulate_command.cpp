@@ -364,7 +364,7 @@ Command add_simulate(CLI::App& app) {
       ->type_name("NAME")
       ->check(CLI::IsMember({"v1", "v2", "catoms", "unit"}).description(""))
       ->capture_default_str();
-  add_seed(*command, options->seed, "Of everything random").capture_default_str();
+  add_seed(*command, options->seed, "Seed of all that is random").capture_default_str();
   add_noise_options(*command, *options);
   add_fault_options(*command, options->faults);
   add_change_options(*command, options->changes, "s, or rounds");
@@ -386,17 +386,23 @@ Command add_simulate(CLI::App& app) {
   command->add_option("--svg", options->svg, "Draw the robot in the colours that it shows")
       ->type_name("FILE");
   add_quiet(*command, options->is_quiet);
-  command->footer(
-      "The exact answer stands beside the robot's own: with --plan, --withdraw and --attach, "
-      "which\n"
-      "are for cubes on a floor, that for the robot and what is planned in the end. With --steps\n"
-      "it stands there for every step, and beside what the robot takes from what it keeps what it\n"
-      "takes from nothing; with --stages it stands there for every stage, and the exit code is\n"
-      "that of the first unsafe one. With --next it is that of holdfast next, by what the robot\n"
-      "says.\n"
-      "Exit, by the robot's verdict: 0 safe, 1 overload or unstable, 2 undecided, 64 wrong usage,\n"
-      "65 bad input or not writable, 70 out of memory.");
-  return {command, [options] { return SimulateRun(*options).run(); }};
+  return {command,
+          [options] { return SimulateRun(*options).run(); },
+          {.examples = {{"simulate arm.json", "what does the robot say, and when?"},
+                        {"simulate arm.json --link v2 --story -", "tell what happens, in words"},
+                        {"simulate arm.json --loss 0.1 --seed 7", "lines that lose packets"},
+                        {"simulate arm.json --kill 2,1,2@1.5", "a module fails after 1.5 s"}},
+           .notes = "The exact answer stands beside the robot's own. With --plan, --withdraw "
+                    "and --attach, which are for cubes on a floor, it is that for the robot and "
+                    "what is planned in the end. With --steps it is given for every step, as "
+                    "is the answer that the robot finds from nothing beside the one that it "
+                    "takes from what it keeps. With --stages it is given for every stage, and "
+                    "the exit status is that of the first unsafe one. With --next the exit "
+                    "status is that of holdfast next, by what the robot says.",
+           .exits = {{kExitSafe, "the robot says safe"},
+                     {kExitUnsafe, "the robot says overload or unstable"},
+                     {kExitUndecided, "the robot says undecided"},
+                     {kExitBadInput, "an input cannot be read, or an output not written"}}}};
 }
 
 }  // namespace holdfast::cli

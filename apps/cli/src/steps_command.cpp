@@ -210,16 +210,23 @@ Command add_steps(CLI::App& app) {
   add_quiet(*command, options->is_quiet);
   command->add_option("--threads", options->thread_count, "0: all cores; the answer is the same")
       ->check(CLI::Range(0, 64));
-  command->footer(
-      "Steps count from 0: those of \"planned\", \"later_steps\" or VisibleSim's targets first, "
-      "then\n"
-      "those of \"steps\". In each the robot is judged after letting go (release), at every "
-      "waypoint\n"
-      "of what moves (shift), and when all is connected again (connect).\n"
-      "Exit: 0 all safe, or proved again, 1 any unsafe, 2 any undecided, 64 wrong usage, 65 bad "
-      "input,\n"
-      "not writable or not proved, 70 out of memory.");
-  return {command, [options] { return run(*options); }};
+  return {command,
+          [options] { return run(*options); },
+          {.examples = {{"steps walk.json", "is every stage safe?"},
+                        {"steps walk.json --until-unsafe --svg walk.svg",
+                         "draw the sequence up to its first unsafe step"},
+                        {"steps proof.json target.json --verify",
+                         "verify a certificate that there is no order"}},
+           .notes = "Steps count from 0: first those of \"planned\", \"later_steps\" or "
+                    "VisibleSim's targets, then those of \"steps\". In each step the robot is "
+                    "judged after letting go (release), at every waypoint of what moves "
+                    "(shift), and when all is connected again (connect).",
+           .exits = {{kExitSafe, "every stage is safe, or the certificate is verified"},
+                     {kExitUnsafe, "any stage is unsafe"},
+                     {kExitUndecided, "none is unsafe, but any is undecided"},
+                     {kExitBadInput,
+                      "an input cannot be read, an output not written, or the "
+                      "certificate is not verified"}}}};
 }
 
 }  // namespace holdfast::cli

@@ -89,11 +89,15 @@ Command add_view(CLI::App& app) {
                    "Write the page there, not into a temporary file; - is standard output")
       ->type_name("FILE");
   command->add_flag("--no-open", options->stays_closed, "Write the page only");
-  command->footer(
-      "Writes one HTML file that needs neither a server nor a network, prints its name, opens it;\n"
-      "with --out - the page goes to standard output, and nothing is opened.\n"
-      "Exit: 0 written, 64 wrong usage, 65 bad input, no page or not writable, 70 out of memory.");
-  return {command, [options] { return run(*options); }};
+  return {command,
+          [options] { return run(*options); },
+          {.examples = {{"view arm.json", "open it in the browser"},
+                        {"view arm.json --out arm.html", "keep the page, to send it"}},
+           .notes = "Writes one HTML file that needs neither a server nor a network, prints its "
+                    "name and opens it. With --out - the page goes to standard output, and "
+                    "nothing is opened.",
+           .exits = {{0, "the page is written"},
+                     {kExitBadInput, "the input cannot be read, or the page not written"}}}};
 }
 
 }  // namespace holdfast::cli

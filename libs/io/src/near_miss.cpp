@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "near_miss.hpp"
+#include "holdfast/io/near_miss.hpp"
 
 #include <algorithm>
 #include <array>

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "holdfast/io/document.hpp"
-#include "near_miss.hpp"
+#include "holdfast/io/near_miss.hpp"
 #include "numbers.hpp"
 
 namespace holdfast::io {

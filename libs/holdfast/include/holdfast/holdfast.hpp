@@ -23,6 +23,7 @@
 #include "holdfast/io/collapse.hpp"            // IWYU pragma: export
 #include "holdfast/io/document.hpp"            // IWYU pragma: export
 #include "holdfast/io/lattice_names.hpp"       // IWYU pragma: export
+#include "holdfast/io/near_miss.hpp"           // IWYU pragma: export
 #include "holdfast/io/picture.hpp"             // IWYU pragma: export
 #include "holdfast/io/report.hpp"              // IWYU pragma: export
 #include "holdfast/limit/limit_load.hpp"       // IWYU pragma: export

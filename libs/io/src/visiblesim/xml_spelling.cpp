@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "near_miss.hpp"
+#include "holdfast/io/near_miss.hpp"
 #include "vocabulary.hpp"
 
 namespace holdfast::io {

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "cell_text.hpp"
+
+namespace holdfast::cli {
+
+bool take_mark(std::string_view& text, char mark) {
+  const bool is_there = text.starts_with(mark);
+  text.remove_prefix(is_there ? 1 : 0);
+  return is_there;
+}
+
+bool take_cell(std::string_view& text, base::Cell& cell) {
+  const bool has_parentheses = take_mark(text, '(');
+  return take_number(text, cell.x) && take_mark(text, ',') && take_number(text, cell.y) &&
+         take_mark(text, ',') && take_number(text, cell.z) &&
+         (!has_parentheses || take_mark(text, ')'));
+}
+
+std::optional<base::Cell> read_cell(std::string_view text) {
+  base::Cell cell;
+  return take_cell(text, cell) && text.empty() ? std::optional(cell) : std::nullopt;
+}
+
+}  // namespace holdfast::cli

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <charconv>
+#include <optional>
+#include <string_view>
+
+#include "holdfast/holdfast.hpp"
+
+/// Cells as arguments of the program: "X,Y,Z", or "(X,Y,Z)" as reports write them. What is taken
+/// is removed from the front of the text.
+namespace holdfast::cli {
+
+template <class Number>
+bool take_number(std::string_view& text, Number& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc()) {
+    return false;
+  }
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return true;
+}
+
+bool take_mark(std::string_view& text, char mark);
+bool take_cell(std::string_view& text, base::Cell& cell);
+
+/// The cell that a text is; none if it is no cell or has anything behind it.
+std::optional<base::Cell> read_cell(std::string_view text);
+
+}  // namespace holdfast::cli

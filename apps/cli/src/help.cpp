@@ -1,0 +1,276 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "help.hpp"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <regex>
+
+#include "holdfast/holdfast.hpp"
+
+namespace holdfast::cli {
+namespace {
+
+/// Where the second column begins, and how wide a text is: as the terminal, within bounds in which
+/// it can be read; 80 where there is none.
+constexpr std::size_t kSecondColumn = 28;
+constexpr std::size_t kWidthMin = 60;
+constexpr std::size_t kWidthMax = 100;
+constexpr std::size_t kWidthUsual = 80;
+constexpr std::size_t kExampleColumnMax = 44;
+
+std::size_t terminal_width() {
+  winsize size{};
+  if (::isatty(STDOUT_FILENO) == 0 || ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0) {
+    return kWidthUsual;
+  }
+  return std::clamp<std::size_t>(size.ws_col, kWidthMin, kWidthMax);
+}
+
+/// A text in lines that end before the terminal does. The first one begins in column `used`, the
+/// others after `indent` blanks.
+std::string wrapped(std::string_view text, std::size_t indent, std::size_t used) {
+  const std::size_t width = terminal_width();
+  std::string out;
+  while (!text.empty()) {
+    const std::string_view word = text.substr(0, text.find(' '));
+    text.remove_prefix(std::min(word.size() + 1, text.size()));
+    if (used + word.size() >= width && used > indent) {
+      out += '\n' + std::string(indent, ' ');
+      used = indent;
+    } else if (!out.empty()) {
+      out += ' ';
+      ++used;
+    }
+    out += word;
+    used += word.size();
+  }
+  return out + '\n';
+}
+
+/// A line of a list: what is explained, and in the second column the explanation.
+std::string entry(const std::string& head, std::string_view text) {
+  std::string out = "  " + head;
+  if (out.size() + 2 > kSecondColumn) {
+    out += '\n' + std::string(kSecondColumn, ' ');
+  } else {
+    out.resize(kSecondColumn, ' ');
+  }
+  return out + wrapped(text, kSecondColumn, kSecondColumn);
+}
+
+/// Paragraphs; those whose lines are indented are lists that stand as they are.
+std::string paragraphs(std::string_view text) {
+  std::string out;
+  while (!text.empty()) {
+    const std::size_t end = text.find("\n\n");
+    const std::string_view paragraph = text.substr(0, end);
+    const bool is_list = paragraph.find("\n  ") != std::string_view::npos;
+    out += '\n' + (is_list ? std::string(paragraph) + '\n' : wrapped(paragraph, 0, 0));
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 2);
+  }
+  return out;
+}
+
+/// What an example does stands beside it, or below it if it is too long for that.
+std::string list_of(const std::vector<Example>& examples) {
+  std::size_t column = 0;
+  for (const Example& example : examples) {
+    const std::size_t end = example.command.size() + std::size("  holdfast   ");
+    column = end <= kExampleColumnMax ? std::max(column, end) : column;
+  }
+  std::string out;
+  for (const auto& [command, what] : examples) {
+    const std::string line = fmt::format("  holdfast {}", command);
+    out += line.size() + 2 <= column
+               ? fmt::format("{:<{}}{}", line, column, wrapped(what, column, column))
+               : fmt::format("{}\n{:{}}{}", line, "", column, wrapped(what, column, column));
+  }
+  return out.empty() ? out : "\nExamples:\n" + out;
+}
+
+std::string list_of(const std::vector<ExitCode>& codes) {
+  std::string out = "\nExit status:\n";
+  for (const auto& [code, meaning] : codes) {
+    out += fmt::format("  {:>2}  ", code) + wrapped(meaning, 6, 6);
+  }
+  return out;
+}
+
+/// The name of an option's value, without what CLI11 says of its checks.
+std::string value_name(const CLI::Option& option) {
+  std::string name = option.get_type_name();
+  for (const std::string_view mark : {":INT", ":FLOAT", ":UINT", ":{", ":NUMBER"}) {
+    name = name.substr(0, name.find(mark));
+  }
+  return name == "INT" || name == "FLOAT" || name == "UINT" ? "N" : name;
+}
+
+std::string head_of(const CLI::Option& option, bool is_positional) {
+  if (is_positional) {
+    const bool is_list = option.get_expected_max() >= CLI::detail::expected_max_vector_size;
+    return option.get_name(true, false) + (is_list ? " ..." : "");
+  }
+  std::string head = std::regex_replace(option.get_name(false, true), std::regex(","), ", ");
+  if (option.get_type_size() != 0 && !value_name(option).empty()) {
+    head += ' ' + value_name(option);
+    head += option.get_expected_max() >= CLI::detail::expected_max_vector_size ? " ..." : "";
+  }
+  return head;
+}
+
+std::string text_of(const CLI::Option& option) {
+  std::string text = option.get_description();
+  if (option.get_type_size() != 0 && !option.get_default_str().empty()) {
+    text += fmt::format(" [default: {}]", option.get_default_str());
+  }
+  std::string others;
+  for (const CLI::Option* other : option.get_excludes()) {
+    others += (others.empty() ? "" : ", ") + other->get_name();
+  }
+  return others.empty() ? text : fmt::format("{} [not with {}]", text, others);
+}
+
+std::string options_of(const CLI::App& app, const HelpFormatter& formatter, bool is_positional) {
+  std::string out;
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_positional() == is_positional && !option->get_group().empty()) {
+      out += formatter.make_option(option, is_positional);
+    }
+  }
+  return out.empty() ? out : (is_positional ? "\nArguments:\n" : "\nOptions:\n") + out;
+}
+
+/// The command that was asked, or the program.
+const CLI::App& asked(const CLI::App& app) {
+  const auto parsed = app.get_subcommands();
+  return parsed.empty() ? app : *parsed.front();
+}
+
+std::string full_name(const CLI::App& command) {
+  return command.get_parent() == nullptr
+             ? command.get_name()
+             : command.get_parent()->get_name() + ' ' + command.get_name();
+}
+
+std::string did_you_mean(std::string_view name, const std::vector<std::string>& known) {
+  const std::vector<std::string_view> names(known.begin(), known.end());
+  const auto near = io::near_miss(name, names);
+  return near ? fmt::format("; did you mean '{}'?", *near) : std::string();
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) {
+      names.push_back("--" + name);
+    }
+  }
+  return names;
+}
+
+std::string unexpected(const CLI::App& command) {
+  for (const std::string& argument : command.remaining()) {
+    if (argument.starts_with('-')) {
+      const std::string name = argument.substr(0, argument.find('='));
+      return fmt::format("there is no option '{}'{}", io::one_line(name),
+                         did_you_mean(name, option_names(command)));
+    }
+  }
+  const auto rest = command.remaining();
+  return rest.empty()
+             ? std::string("an argument is not expected")
+             : fmt::format("the argument '{}' is not expected", io::one_line(rest.front()));
+}
+
+/// "a, b or c" of "a,b,c".
+std::string choice(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
+  }
+  return text;
+}
+
+/// CLI11's words for what it found, in ours.
+std::string reworded(const std::string& text) {
+  std::smatch found;
+  if (std::regex_match(text, found, std::regex("(.*): (.*) not in \\{(.*)\\}"))) {
+    const std::vector<std::string> words = CLI::detail::split(found.str(3), ',');
+    return fmt::format("{}: expected {}, found '{}'{}", found.str(1), choice(words),
+                       io::one_line(found.str(2)), did_you_mean(found.str(2), words));
+  }
+  if (std::regex_match(text, found, std::regex("(.*): Value (.*) not in range (.*) to (.*)"))) {
+    return fmt::format("{}: expected a number from {} to {}, found {}", found.str(1),
+                       std::stod(found.str(3)), std::stod(found.str(4)),
+                       io::one_line(found.str(2)));
+  }
+  if (std::regex_match(text, found, std::regex("(.*): 1 required (.*) missing"))) {
+    return fmt::format("{} has no value, expected {}", found.str(1), found.str(2));
+  }
+  if (std::regex_match(text, found, std::regex("Could not convert: (.*) = (.*)"))) {
+    return fmt::format("{}: expected a number, found '{}'", found.str(1),
+                       io::one_line(found.str(2)));
+  }
+  if (std::regex_match(text, found, std::regex("(.*) excludes (.*)"))) {
+    return fmt::format("{} and {} exclude each other", found.str(1), found.str(2));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string HelpFormatter::make_option(const CLI::Option* option, bool is_positional) const {
+  return entry(head_of(*option, is_positional), text_of(*option));
+}
+
+std::string HelpFormatter::make_subcommand(const CLI::App* command) const {
+  return entry(command->get_name(), command->get_description());
+}
+
+std::string HelpFormatter::make_help(const CLI::App* app, std::string /*name*/,
+                                     CLI::AppFormatMode /*mode*/) const {
+  const auto known = helps_.find(app);
+  const Help help = known != helps_.end() ? known->second : Help();
+  std::string out = wrapped(app->get_description() + '.', 0, 0) + '\n';
+  out += make_usage(app, full_name(*app));
+  out += list_of(help.examples) + options_of(*app, *this, true) + options_of(*app, *this, false);
+  const auto commands = app->get_subcommands({});
+  out += commands.empty() ? "" : "\nCommands:\n";
+  for (const CLI::App* command : commands) {
+    out += make_subcommand(command);
+  }
+  out += paragraphs(help.notes);
+  if (!help.exits.empty()) {
+    std::vector<ExitCode> exits = help.exits;
+    exits.push_back({kExitUsage, "wrong usage"});
+    exits.push_back({kExitFailure, "out of memory"});
+    std::ranges::stable_sort(exits, {}, &ExitCode::code);
+    out += list_of(exits);
+  }
+  return out;
+}
+
+std::string usage_error(const CLI::App& app, const CLI::Error& error) {
+  const CLI::App& command = asked(app);
+  const std::string what = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError)
+                               ? unexpected(command)
+                               : reworded(error.what());
+  return fmt::format("{0}: {1}\nTry '{0} --help'.\n", full_name(command), what);
+}
+
+std::string unknown_command(const CLI::App& app, std::string_view argument) {
+  std::vector<std::string> names = {"help"};
+  for (const CLI::App* command : app.get_subcommands({})) {
+    names.push_back(command->get_name());
+  }
+  const std::string near = did_you_mean(argument, names);
+  return fmt::format(
+      "holdfast: there is no command '{}'{}\n", io::one_line(argument),
+      !near.empty() ? near : "; there are " + fmt::format("{}", fmt::join(names, ", ")));
+}
+
+}  // namespace holdfast::cli
