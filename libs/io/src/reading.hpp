@@ -69,7 +69,8 @@ class Reading {
   /// Before anything of the material, and take_lattice().
   void take_robot(const std::string& named, const ReadOptions& options, const Where& where);
 
-  /// After all of the material: what of the robot is not known must have been said.
+  /// Fails if the material lacks a figure that is not published for the robot, else fills in the
+  /// section; to be called when the whole material is read.
   void complete_material(const Where& where);
 
   /// The lattice of the document: `named`, what the file says, or what the options say; a failure
@@ -95,7 +96,7 @@ class Reading {
   base::Result<ReadDocument> finish() &&;
 
  protected:
-  /// From the document's cells to those of the file, in which its grid counts.
+  /// The offset from a cell of the document to the same cell in the file and its grid.
   base::Cell shift_;
 
  private:

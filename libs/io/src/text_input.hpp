@@ -16,13 +16,13 @@ namespace holdfast::io {
 inline constexpr std::size_t kStringBytesMax = std::size_t{1} << 20U;
 inline constexpr std::size_t kNameBytesMax = 256;
 
-/// In quotes for a message: printable ASCII ('?' for the rest), cut after 60 characters.
+/// Quotes text for a message: printable ASCII ('?' for the rest), cut after 60 characters.
 std::string excerpt(std::string_view text);
 
-/// Without white space at both ends.
+/// The text without white space at both ends.
 std::string_view trimmed(std::string_view text);
 
-/// Without a byte order mark.
+/// The text without its byte order mark, if it has one.
 std::string_view without_bom(std::string_view text);
 
 /// "line 12", for Error::where. Takes time proportional to the offset.

@@ -85,7 +85,7 @@ inline constexpr auto kTopKeys = std::to_array<std::string_view>(
     {"$schema", "format", "version", "name", "description", "support_z", "material", "modules",
      "planned", "later_steps", "known_answer", "visiblesim"});
 
-/// Those that only version 2 has, alone and with all others.
+/// The keys that only version 2 has.
 inline constexpr auto kExtensionKeys = std::to_array<std::string_view>(
     {"robot", "lattice", "floor", "gravity_m_s2", "kinds", "obstacles", "loads", "steps"});
 inline constexpr auto kAllTopKeys = joined(kTopKeys, kExtensionKeys);

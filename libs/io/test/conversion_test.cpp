@@ -68,7 +68,7 @@ class RandomDocument {
     return document;
   }
 
-  /// The same with what only version 2 of holdfast JSON says.
+  /// Returns the document of make() with members that only version 2 of holdfast JSON has.
   Document make_extended() {
     Document document = make();
     Extension& extension = document.extension;

@@ -70,7 +70,8 @@ TEST(RobotDefaults, give_way_to_what_the_file_says_of_connections) {
   EXPECT_EQ(spec.value().kinds[0].connectors[0].lever_mm, 7);
 }
 
-/// The same section as that of Blinky Blocks, ten times as small: areas by 100, moments by 10^4.
+/// The section is that of Blinky Blocks at a tenth of their size: areas are divided by 100, moments
+/// by 10^4.
 TEST(RobotDefaults, make_the_section_of_beams_as_wide_as_the_pitch) {
   const model::Material material =
       read(R"("robot": "soldercubes", "material": {"pitch_mm": 4, "mass_kg": 1})").material;

@@ -265,7 +265,7 @@ TEST(Vtu, a_single_module_has_no_lines) {
   EXPECT_NEAR(grid.triple("ground_force_n", 0)[2], kWeight, 1e-8);
 }
 
-/// Of a robot whose arrays have many blocks: 6,000 modules, 48,000 corners of 24 bytes.
+/// The arrays have many blocks: 6,000 modules, 48,000 corners of 24 bytes.
 TEST(Vtu, large_arrays_are_whole_whatever_the_number_of_threads) {
   const model::Robot robot = make({.existing = box(10, 10, 60)});
   const verdict::Assessment assessment = without_loads(robot);

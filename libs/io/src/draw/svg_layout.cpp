@@ -111,7 +111,7 @@ Extent extent_of(const Scene& scene) {
   return extent;
 }
 
-/// As large as fits, in the middle of the drawing.
+/// Scales the scene so that it fills the drawing, up to kEdgePxMax, and centres it.
 void lay_out(Scene& scene) {
   const Extent extent = extent_of(scene);
   const double u_span = extent.u_max - extent.u_min;

@@ -39,7 +39,7 @@ struct LatticePoint {
   double z = 0;
 };
 
-/// From the lattice to pixels.
+/// The map from lattice coordinates to pixels.
 struct Projection {
   base::Cell lowest;      ///< Whose lower corner is the origin of (u, v); cubic lattices only.
   double edge_px = 1;     ///< Length of a cube's edge on the picture.
@@ -84,10 +84,10 @@ struct Scene {
   double card_width = 0;
   Box drawing;  ///< Pixels that the drawing may use.
 
-  /// Of the plane of the support polygon, if there is one.
+  /// The height of the plane of the support polygon, if there is one.
   double ground_z() const;
 
-  /// Of the floor, if there is one.
+  /// The height of the floor, if there is one.
   double floor_z() const;
 
   /// Something rests on the ground, so there is a support polygon.

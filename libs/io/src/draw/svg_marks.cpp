@@ -23,7 +23,7 @@ struct SharedFace {
   std::vector<ScreenPoint> corners;
 };
 
-/// Of cubes, whose connection runs along an axis.
+/// The face that two cubes share, which is a square across the axis of their connection.
 std::vector<Place> square_across(std::size_t axis) {
   const auto corner = [&](double first, double second) {
     Place place{};
@@ -34,7 +34,7 @@ std::vector<Place> square_across(std::size_t axis) {
   return {corner(-0.5, -0.5), corner(0.5, -0.5), corner(0.5, 0.5), corner(-0.5, 0.5)};
 }
 
-/// Of balls and discs, which share a point or a line: a circle around it.
+/// A circle around the point or line that two balls or discs share.
 std::vector<Place> circle_across(const base::Lattice& lattice, base::Direction direction) {
   constexpr int kCorners = 16;
   constexpr double kRadius = 0.28;

@@ -254,7 +254,7 @@ void read_steps(JsonReading& reading, const Json& value, const JsonPlace& place)
   reading.document.extension.plan = list_of(reading, value, place, plan_step);
 }
 
-/// For what is read before all else.
+/// Skips a member that is read before all others.
 void pass_over(JsonReading& /*reading*/, const Json& /*value*/, const JsonPlace& /*place*/) {}
 
 /// The JSON pointer to a module that has parameters of its own.
@@ -293,7 +293,8 @@ void read_own_parameter(JsonReading& reading, std::string_view key, const Json& 
 
 namespace {
 
-/// In the words of a file for VisibleSim: attributes of blocks, or a pointer into <extension>.
+/// Translates a JSON pointer into the terms of a VisibleSim file: an attribute of a block, or a
+/// pointer into <extension>.
 std::string place_in_xml(const Document& document, const std::string& pointer) {
   for (const OwnParameters& own : document.extension.own) {
     if (pointer == own_place(own) + "/kind") {

@@ -16,7 +16,7 @@
 #include "text_input.hpp"
 #include "vocabulary.hpp"
 
-/// From what a file says to what a robot is made from.
+/// Translates what a file says into what a robot is made of.
 namespace holdfast::io {
 namespace {
 
@@ -110,7 +110,8 @@ std::optional<base::Error> find_fault(const model::Material& material, const Jso
   return std::nullopt;
 }
 
-/// Before the robot is made, which does not know the file's names and places.
+/// Finds faults before the robot is made, because the robot does not know the file's names and
+/// places.
 std::optional<base::Error> find_fault(const Document& document) {
   const Extension& extension = document.extension;
   const JsonPlace top;

@@ -16,7 +16,7 @@
 namespace holdfast::io {
 namespace {
 
-/// As many of the most loaded connections are listed.
+/// The number of most loaded connections that are listed.
 constexpr std::size_t kListedCount = 5;
 
 using Out = std::back_insert_iterator<std::string>;

@@ -19,7 +19,8 @@ using verdict::Verdict;
 /// Up to so many steps each has its line.
 constexpr std::size_t kListedMax = 40;
 
-/// Of more, so many that are not safe.
+/// The number of steps that are not safe and have a line where there are more than kListedMax
+/// steps.
 constexpr std::size_t kUnsafeListedMax = 10;
 
 const StageJudgement& stage_of(const plan::StepJudgement& step, plan::Stage stage) {

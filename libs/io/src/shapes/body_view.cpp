@@ -149,8 +149,9 @@ BodyView::BodyView(const model::Robot& robot, NearObstacles obstacles)
   });
 }
 
-/// Of a module that fills its cell: nothing is seen of a face between two existing modules, nor of
-/// one between two planned ones, and of one between either kind the existing module's is drawn.
+/// Finds the hidden faces of a module that fills its cell. A face between two existing modules, or
+/// between two planned ones, is not drawn; where one of each kind meet, the existing module's face
+/// is.
 std::uint16_t BodyView::faces_hidden_by_neighbours(std::size_t module) const {
   std::uint16_t hidden = 0;
   for (std::size_t face = 0; face < module_faces_.size(); ++face) {

@@ -26,7 +26,7 @@ struct SeenFace {
 /// kBallRadius.
 std::vector<SeenFace> seen_faces(const base::Lattice& lattice);
 
-/// The same of the cell of an obstacle.
+/// The visible faces of an obstacle's cell without neighbours.
 std::vector<SeenFace> seen_cell_faces(const base::Lattice& lattice);
 
 /// Obstacles are glass. Those that hide nothing of the robot, and those of which it hides nothing,
@@ -59,7 +59,7 @@ class BodyView {
 
   Body body() const { return body_; }
 
-  /// Of a module, and of an obstacle cell, without neighbours.
+  /// The visible faces of a module without neighbours.
   std::span<const SeenFace> module_faces() const { return module_faces_; }
 
   std::span<const SeenFace> obstacle_faces() const { return obstacle_faces_; }

@@ -36,7 +36,7 @@ bool has_loads(const model::Robot& robot, const verdict::Assessment& assessment)
 std::vector<ModulePaint> paint_modules(const model::Robot& robot,
                                        const verdict::Assessment& assessment);
 
-/// In integers, so that it is the same everywhere.
+/// The colour of a load, computed in integers, so that it is the same on every machine.
 Color load_color(int percent);
 Color color_of(const ModulePaint& paint);
 
@@ -46,7 +46,8 @@ Color lightened(Color color, int percent);
 /// A face by its direction: light falls from above and from the left.
 Color shaded(Color color, Side side);
 
-/// The same of a face with any normal; those of a cube look as by their side.
+/// Shades a face by its normal, which may point anywhere; a cube's face looks as it does by its
+/// side.
 Color shaded(Color color, const Place& normal);
 
 /// "#rrggbb".

@@ -79,7 +79,8 @@ Character first_character(std::string_view text) {
   return is_good ? Character{.code = code, .size = size} : Character{};
 }
 
-/// In units of the font size, measured on DejaVu Sans, one of the widest of its kind.
+/// The width of a character in units of the font size, measured on DejaVu Sans, which is among the
+/// widest sans-serif faces.
 double character_width(std::uint32_t code) {
   const auto is_one_of = [&](std::string_view characters) {
     return code < 0x80 && characters.find(static_cast<char>(code)) != std::string_view::npos;

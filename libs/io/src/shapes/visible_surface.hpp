@@ -53,8 +53,8 @@ struct VisibleEdge {
   Vertex to;
   bool is_outline = false;  ///< Behind it lies something further away, or nothing.
   bool is_planned = false;  ///< Of a planned module.
-  /// On which side the robot goes on further away: 1 right of or below the edge, -1 left of or
-  /// above it, 0 nowhere.
+  /// The side on which the robot continues further away: 1 right of or below the edge, -1 left of
+  /// or above it, 0 neither.
   std::int8_t far_side = 0;
 };
 

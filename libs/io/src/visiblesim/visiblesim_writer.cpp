@@ -201,7 +201,7 @@ void add_obstacles(pugi::xml_node world, const Document& document, const base::C
   }
 }
 
-/// At least one target, as users of VisibleSim write it even where nothing is planned.
+/// Writes the targets; one empty target where nothing is planned, as users of VisibleSim write it.
 void add_targets(pugi::xml_node world, const Document& document, const base::Cell& shift,
                  OwnAttributes& own) {
   pugi::xml_node list = append(world, "targetList");

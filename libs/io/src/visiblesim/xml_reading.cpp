@@ -69,7 +69,7 @@ class ShapeCheck {
   }
 
  private:
-  /// From a '<' to the end of what it begins.
+  /// Moves i from a '<' to the end of what it begins.
   void step(std::size_t& i) {
     const std::string_view rest = text_.substr(i);
     if (rest.starts_with("<!--")) {
@@ -94,7 +94,7 @@ class ShapeCheck {
     i = std::min(text_.find(end, i + length), text_.size());
   }
 
-  /// To the '>' that ends a tag; those in attribute values do not.
+  /// Moves i to the '>' that ends a tag, past those in attribute values.
   void skip_tag(std::size_t& i) {
     char quote = '\0';
     for (++i; i < text_.size(); ++i) {

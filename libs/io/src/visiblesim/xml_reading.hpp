@@ -37,7 +37,7 @@ class XmlReading : public Reading {
   void expect_no_content(const pugi::xml_node& node);
   void warn_of_unknown_child(const pugi::xml_node& child, Names known);
 
-  /// Those attributes that `is_read` leaves.
+  /// The attributes for which `is_read` is false.
   Attributes attributes(const pugi::xml_node& node, bool (*is_read)(std::string_view name));
 
   /// nullptr, and a failure, if there is none.

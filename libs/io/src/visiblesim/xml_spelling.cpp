@@ -21,7 +21,7 @@ struct Content {
   Names children;
 };
 
-/// Of the document first, whose name is empty.
+/// The elements that are read; the first, whose name is empty, is the document.
 const std::vector<Content>& contents() {
   static const std::vector<Content> list = {{"", {}, kRootElements},
                                             {kRootElement, {}, kRootElements},

@@ -43,7 +43,7 @@ class VtuArrays {
   /// The attribute of <VTKFile> that says how arrays are compressed; empty if they are not.
   static std::string_view compressor();
 
-  /// From now on announce() only says what an array is, in the element <PDataArray>.
+  /// Makes announce() describe arrays only, in the element <PDataArray>.
   void list_only() { is_list_ = true; }
 
   /// Writes the element <DataArray>.

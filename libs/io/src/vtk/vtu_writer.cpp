@@ -482,7 +482,7 @@ class Writer {
     return is_known ? pressing_corners(states[facet]) : kNotOnGround;
   }
 
-  /// Of a module's facets the one that presses with most corners.
+  /// The largest number of pressing corners of any facet, by module.
   std::vector<std::int8_t> contact_by_module() const {
     std::vector<std::int8_t> most(module_count_, kNotOnGround);
     for (std::size_t facet = 0; facet < facet_count_; ++facet) {

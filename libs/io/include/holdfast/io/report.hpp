@@ -27,7 +27,7 @@ std::string one_line(std::string_view text);
 /// is the one that was assessed.
 std::string reason_text(const model::Robot& robot, const verdict::Reason& reason);
 
-/// The same with the cells that verdict::cells_of() has found.
+/// Returns the same sentence, with the cells that verdict::cells_of() has found.
 std::string reason_text(const verdict::Reason& reason, std::span<const base::Cell> cells);
 
 /// What a report says of a robot of which the entry's is a part only.
