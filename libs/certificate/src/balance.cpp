@@ -47,7 +47,7 @@ Six balancing_at_b(const Six& rest, int axis) {
   return s;
 }
 
-/// At the end a: r_t = -s_t, r_m = -s_m - e x s_t.
+/// The spring forces s that balance a rest r at the end a: r_t = -s_t, r_m = -s_m - e x s_t.
 Six balancing_at_a(const Six& rest, int axis) {
   Six s = lever_of(rest, axis);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -182,7 +182,7 @@ Balance Balancer::from_springs(std::size_t field) const {
   return balance;
 }
 
-/// From the ends of the trees to their roots.
+/// Goes from the ends of the trees to their roots.
 void Balancer::close(Balance& balance) const {
   const std::vector<std::size_t>& facets = structure_.facets();
   std::vector<std::size_t> facet_of(balance.rest.size());

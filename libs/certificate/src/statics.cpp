@@ -10,7 +10,8 @@ namespace {
 
 using Cell = std::array<std::int32_t, 3>;
 
-/// As it stands in the certificate, or as it stood in the file, in decimal.
+/// Encloses the double in the certificate and the decimal number in the file that was rounded to
+/// it.
 Ball number(double value) {
   return {value, std::abs(value) * std::numeric_limits<double>::epsilon()};
 }

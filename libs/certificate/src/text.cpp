@@ -187,7 +187,7 @@ class Words {
     return value;
   }
 
-  /// At most 30 hexadecimal digits, so nothing overflows.
+  /// Reads an integer of at most 30 hexadecimal digits, so that nothing overflows.
   Integer integer() {
     std::string_view word = next();
     const bool is_negative = !word.empty() && word.front() == '-';

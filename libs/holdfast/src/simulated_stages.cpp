@@ -21,7 +21,7 @@ constexpr std::array<Stage, plan::kStageCount> kStages = {Stage::kRelease, Stage
 
 std::size_t at(Stage stage) { return static_cast<std::size_t>(stage); }
 
-/// The same stage as modules name it: 0 is none.
+/// The modules' name for a stage; they count from 1, as 0 is none.
 agent::Stage stage_of(Stage stage) { return static_cast<agent::Stage>(at(stage) + 1); }
 
 /// Which limit the connection with the largest load ratio is nearest to.

@@ -42,7 +42,7 @@ bool has(const Cells& cells, const base::Cell& cell) {
   return std::ranges::find(cells, cell) != cells.end();
 }
 
-/// Those of a list, by cell, that belong to a cell.
+/// The items of a list that belong to a cell.
 template <class Item>
 std::vector<Item> of_cell(const std::vector<Item>& items, const base::Cell& cell) {
   std::vector<Item> found;
@@ -257,7 +257,7 @@ std::string cells_text(const StepChange& change) {
   return text;
 }
 
-/// In rounds where ticks have no length.
+/// The time as text, in rounds if ticks have no length.
 std::string time_or_rounds(const sim::LinkModel& link, sim::Time time) {
   return time_text(link, time, fmt::format("{}", time));
 }

@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// As many links the kernel follows, too.
+/// The number of symbolic links that are followed, which is also the kernel's.
 constexpr int kLinkCountMax = 40;
 
 /// More names that are taken are no accident.
@@ -202,7 +202,7 @@ class OutputFile::Writer {
     return 0;
   }
 
-  /// With owner, as far as that is allowed, and permission bits of another file.
+  /// Starts with another file's permission bits and, if that is allowed, its owner.
   int start_like(int descriptor, const struct stat& old) {
     [[maybe_unused]] const int is_not_owned = ::fchown(descriptor, old.st_uid, old.st_gid);
     const int error = ::fchmod(descriptor, old.st_mode & 07777U) == 0 ? 0 : errno;

@@ -76,7 +76,7 @@ class Team::Crew {
   Crew(const Crew&) = delete;
   Crew& operator=(const Crew&) = delete;
 
-  /// As many as were asked for, though the machine may have given fewer.
+  /// The number of threads that was asked for; the machine may have given fewer.
   std::size_t wanted_count() const { return ranges_.size(); }
 
   int thread_count() const { return static_cast<int>(threads_.size()) + 1; }
@@ -180,7 +180,7 @@ void Team::Crew::do_task(std::size_t begin, std::size_t end) noexcept {
   }
 }
 
-/// In a handler of what was thrown.
+/// Keeps the exception that is being handled if it is the first.
 void Team::Crew::note_failure() noexcept {
   if (!has_failed_.exchange(true, std::memory_order_acq_rel)) {
     failure_ = std::current_exception();

@@ -159,7 +159,8 @@ std::optional<std::string> find_kind_fault(const RobotSpec& spec) {
   return std::nullopt;
 }
 
-/// In what only the general case has.
+/// Finds a fault in what the paper's robots do not have: gravity, friction, kinds, obstacles,
+/// payloads and masses.
 std::optional<std::string> find_general_fault(const RobotSpec& spec) {
   auto fault = find_sheet_fault(spec);
   fault = fault ? fault : find_gravity_fault(spec);

@@ -149,7 +149,7 @@ class Prover {
   }
 
  private:
-  /// As many bits after the point as the largest displacement leaves room for.
+  /// The number of bits after the point for which the largest displacement leaves room.
   int bits_for(const std::vector<Vec>& displacement) const {
     double largest = 1;
     for (const Vec& u : displacement) {
@@ -161,12 +161,13 @@ class Prover {
     return std::clamp(room, 0, certificate::kBitsMax);
   }
 
-  /// From mm and rad to the certificate's unit.
+  /// Converts mm and rad to the certificate's unit.
   double scaled(double displacement, std::size_t k) const {
     return (k < 3 ? displacement : displacement * lever_mm_) / displacement_mm_;
   }
 
-  /// In 106 bits: of a slender robot the loads are in the digits that a double has not.
+  /// Takes the displacements in 106 bits: the loads of a slender robot are in the digits that a
+  /// double does not have.
   void take_displacements() {
     const double unit = std::ldexp(displacement_mm_, -proof_.certificate.bits);
     for (const certificate::Six& six : proof_.certificate.fields[0]) {
@@ -252,7 +253,7 @@ class Prover {
     return true;
   }
 
-  /// In N and N mm.
+  /// The forces of a residual in N and N mm.
   std::vector<Vec> force_of(const Residual& residual) const {
     const double unit = std::ldexp(force_n_, -proof_.certificate.bits);
     std::vector<Vec> force(residual.force.size());

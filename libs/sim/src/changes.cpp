@@ -236,7 +236,7 @@ void Engine::make_fault(const Fault& fault) {
   }
 }
 
-/// To both ends of a link.
+/// Changes both ends of a link.
 void Engine::make_link_fault(const Fault& fault) {
   const std::int32_t other = neighbour(fault.module, fault.face);
   const bool is_silent = fault.kind == Fault::Kind::kCut || fault.kind == Fault::Kind::kMend;

@@ -214,7 +214,7 @@ void Engine::set_wake(Port& port, Time wake_at, bool is_watching) {
   work_count_ += port.has_work() ? 1 : 0;
 }
 
-/// After a step: send, or compute first.
+/// Ends a step of a module: it sends, or computes first.
 void Engine::settle(std::int32_t module) {
   const Time compute_time = options_.link.compute_time;
   if (compute_time == 0) {

@@ -54,7 +54,7 @@ double dot(const std::array<double, 3>& a, const std::array<double, 3>& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// In the frame of a plane: force, then torque.
+/// Turns a load, force then torque, into the frame of a plane.
 base::Vec6<double> in_plane(const SupportPlane& plane, const base::Vec6<double>& load) {
   base::Vec6<double> local{};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -187,7 +187,8 @@ void EnvironmentMap::describe(const void* map, const base::Cell& cell, agent::Su
   self.describe(base::at(module), node);
 }
 
-/// Of a module that the robot does not have nothing is known: its load already decides nothing.
+/// The law of a connection. A module that the robot does not have gets a default law: its load,
+/// which is not a number, already prevents a decision.
 const model::ConnectorLaw& EnvironmentMap::law(const void* map, const base::Cell& cell,
                                                base::Direction direction, const base::Cell& other) {
   static const model::ConnectorLaw kUnknown;

@@ -165,7 +165,7 @@ TEST(Fault, of_a_connection_opened_and_closed_again_leads_to_both_verdicts) {
   }
 }
 
-/// As after a power failure: its neighbours are there all the time, and have not noticed.
+/// A module starts again as after a power failure: its neighbours stay, and have not noticed.
 TEST(Fault, of_a_module_that_starts_again_leads_to_the_verdict_with_it) {
   const model::Robot robot = make_robot(cube(2));
   for (const agent::Method method : {agent::Method::kElimination, agent::Method::kFronts}) {

@@ -195,7 +195,7 @@ namespace {
 /// Neither zero nor subnormal, infinite or a NaN.
 bool is_usual(Double a) { return ((high(a) + 0x100000U) & 0x7fe00000U) != 0; }
 
-/// From digits with the hidden one.
+/// Multiplies the digits of two numbers, the hidden one included.
 [[gnu::noinline]] Double multiply_digits(std::uint64_t x, std::uint64_t y, int exponent,
                                          Double sign) {
   // 106 digits; the lower 32 only matter as a trace.

@@ -33,8 +33,8 @@ constexpr double kStableGammasMultigrid[] = {1e-6};
 /// drown the contact states in rounding.
 constexpr double kTopplingGammas[] = {1e-6, 1e-7};
 
-/// From here on a robot that topples is told from the rigid body alone, which is certain: its
-/// equilibrium is that of the weak springs it would hang on, a large and almost singular problem.
+/// A toppling robot of more modules is recognised by the rigid body alone, which is certain: its
+/// equilibrium is that of the weak springs that would hold it, a large and almost singular problem.
 constexpr std::size_t kTopplingCountMax = 1000;
 
 /// A verdict that hangs on multigrid's error is sought once more with so much less of it.
@@ -44,8 +44,9 @@ constexpr double kFinerTolerance = 1e-6;
 /// cube of 17, 4,913 modules, has 60.
 constexpr std::size_t kPreciseFillMax = 100;
 
-/// From here on it is asked last, after multigrid with some more digits and with many: of a tower
-/// of 3 x 3 x 20,000 that takes a sixth of the time and a tenth of the memory.
+/// The direct solver comes last for robots of more modules, after multigrid with some more digits
+/// and with many: a tower of 3 x 3 x 20,000 then takes a sixth of the time and a tenth of the
+/// memory.
 constexpr std::size_t kPreciseCountMax = 2'000;
 constexpr double kFineTolerance = 1e-4;
 

@@ -222,9 +222,8 @@ LoadRange between_answers(const Loads& loads) {
                                          .high = std::max(loads.ratio_max, loads.other_max)};
 }
 
-/// From so many on memory that the solver has left goes back before results, which come in one
-/// piece that is larger than any hole, take theirs: a ball of 990,000 modules takes 380 MB instead
-/// of 500.
+/// Robots of so many modules free the solver's memory before their results, one block that fits
+/// into no hole, are allocated: a ball of 990,000 modules takes 380 MB instead of 500.
 constexpr std::size_t kManyModules = 200'000;
 
 /// Nothing is said of a load below its own uncertainty: then it may as well be compression. Between
@@ -236,7 +235,7 @@ bool is_pulled_apart(double ratio_max, const Assessment& assessment) {
   return ratio_max >= kLoadRatioTie && is_known;
 }
 
-/// Of all ranks' gaps.
+/// The gap that is widest for its limit, and the count of all ranks' gaps.
 OpenGaps widest_of_all(host::Ranks& ranks, const OpenGaps& mine) {
   OpenGaps widest = mine;
   widest.count = 0;

@@ -30,8 +30,8 @@ double weak_spring_error(const model::Robot& robot, const solver::Equilibrium& e
 LoadRange assess_loads(const Situation& here, const solver::EquilibriumOptions& options,
                        Assessment& assessment);
 
-/// After assess_loads(): fills in every connection's result, unless they are there, and sorts those
-/// that break.
+/// Fills in the results of all connections, unless they are there, and sorts those that break; to
+/// be called after assess_loads().
 void assess_connections(const model::Robot& robot, int thread_count, Assessment& assessment);
 
 /// The gaps that are too wide; none if no connection has a limit, or none is exceeded.

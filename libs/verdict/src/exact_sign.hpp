@@ -50,7 +50,7 @@ class Measure {
   int sign(const Area& area) const;
   int sign(const Length& length) const;
 
-  /// In units of P, or of P^2, rounded; zero and sign are exact.
+  /// The value of an area in P^2, of a length in P, rounded; zero and sign are exact.
   double value(const Area& area) const;
   double value(const Length& length) const;
 

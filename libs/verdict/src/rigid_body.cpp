@@ -17,8 +17,8 @@
 namespace holdfast::verdict {
 namespace {
 
-/// In half pitches and half facets. Scaled by the number of modules where the centre of mass takes
-/// part: coordinates reach 2^21 times 2^25 modules, products 2^70.
+/// A point in half pitches and half facets. All are scaled by the number of modules where the
+/// centre of mass takes part: coordinates reach 2^21 times 2^25 modules, products 2^70.
 struct Point {
   Length x;
   Length y;
@@ -125,7 +125,7 @@ bool contains_strictly(const std::vector<Point>& hull, const Point& mass, std::i
   return true;
 }
 
-/// In half pitches, times `count`.
+/// The edge nearest to the centre of mass, and its distance in half pitches, times `count`.
 EdgeDistance nearest_edge(const std::vector<Point>& hull, const Point& mass, std::int64_t count,
                           const Measure& measure) {
   EdgeDistance nearest;

@@ -281,7 +281,7 @@ TEST(DisplacedMass, is_over_its_polygon_by_more_than_the_solver_may_be_off) {
   }
 }
 
-/// Of random robots that are made soft, none is safe whose displaced mass is outside its polygon.
+/// A random soft robot is never safe if its displaced mass is outside its polygon.
 TEST(DisplacedMass, of_a_safe_robot_is_over_its_polygon) {
   int left_count = 0;
   for (int seed = 0; seed < test::campaign(60); ++seed) {

@@ -49,7 +49,7 @@ struct Trial {
   /// void then.
   bool is_robot = false;
   verdict::Verdict verdict = verdict::Verdict::kUndecided;
-  /// None for a robot that topples, which needs no loads, and where no load is known.
+  /// The largest load ratio; none where no load is known, as for a robot that topples.
   std::optional<double> load_ratio_max = {};
   /// The margin of verdict::RigidBody in mm: negative for a robot that topples, none for one that
   /// is fixed.

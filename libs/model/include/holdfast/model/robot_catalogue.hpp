@@ -40,7 +40,7 @@ struct CatalogueRobot {
   std::string_view note;  ///< What to know before the figures are used; may be empty.
   std::vector<RobotFigure> figures;
 
-  /// None if the robot has no such figure, or its value was not found.
+  /// The value of a figure; none if the robot has no such figure, or its value was not found.
   std::optional<double> value(std::string_view key) const;
 };
 

@@ -122,8 +122,9 @@ struct Assessment {
   /// if the rigid body holds and the model does not say otherwise. Bonded supports hold always.
   bool is_stable = false;
 
-  /// None for a robot that is whole. Of a part `connections` and `broken` are this rank's, and
-  /// `worst` is an index at the rank that has it; all else is of the whole robot.
+  /// The loads of the whole robot if this is a part of it; none for a robot that is whole.
+  /// `connections` and `broken` of a part are this rank's, and `worst` is an index at the rank that
+  /// has it; all else is of the whole robot.
   std::optional<WholeLoads> whole;
 
   /// One result per connection of the robot; empty if no equilibrium was found, or sought: a large
