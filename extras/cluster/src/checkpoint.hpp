@@ -20,7 +20,7 @@ namespace holdfast::cluster {
 /// ranks as it likes, goes on from there.
 class Checkpoint final : public solver::ContactJournal {
  public:
-  /// Of a structure with this fingerprint, of whose facets `facet_count` are this rank's.
+  /// The structure has this fingerprint, and `facet_count` of its facets are this rank's.
   Checkpoint(PetscRanks& ranks, std::string file, std::uint64_t fingerprint,
              std::size_t facet_count);
 

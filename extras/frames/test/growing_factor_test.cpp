@@ -108,7 +108,7 @@ struct Case {
         present, [&](std::size_t t) { return t == left || held.contains(terms[t].b); });
   }
 
-  /// By Eigen, from the sum of all terms that are present; zero at nodes that are not.
+  /// The solution by Eigen, from the sum of all terms that are present; zero at nodes that are not.
   Eigen::VectorXd dense_solution(const Eigen::VectorXd& load) const {
     Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(6 * node_count, 6 * node_count);
     for (const std::size_t t : present) {

@@ -49,7 +49,7 @@ class PetscRanks final : public host::Ranks {
   void watch(const host::KrylovTask& task) override;
   bool solve(const host::KrylovTask& task, std::span<const double> b, std::span<double> x) override;
 
-  /// To each rank its bytes; returns what each has for this one.
+  /// Sends each rank its bytes; returns what each has for this one.
   std::vector<std::vector<std::byte>> exchange(const std::vector<std::vector<std::byte>>& to);
 
  private:
