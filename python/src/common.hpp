@@ -39,7 +39,7 @@ T take(base::Result<T> result, std::string_view file = {}) {
   return std::move(result).value();
 }
 
-/// The same for what returns nothing but an error.
+/// Raises holdfast.Error if there is an error.
 void take(const std::optional<base::Error>& error, std::string_view file);
 
 /// Robots and reports are never changed once made, so many may share one.

@@ -68,7 +68,7 @@ class Watch {
     }
   }
 
-  /// At once.
+  /// Calls the progress function at once.
   template <class... Number>
   void tell(Number... numbers) {
     with_gil([&] {
@@ -115,7 +115,7 @@ auto without_gil(Watch& watch, const Work& work) {
   return work();
 }
 
-/// The same for work that does not say how far it is.
+/// Does work that does not report its progress, without the GIL.
 template <class Work>
 auto without_gil(const Work& work) {
   Watch watch((py::none()));

@@ -162,7 +162,7 @@ py::array cells_in(const io::OrderReport& report, const auto& elements) {
   return array_of(cells);
 }
 
-/// As they are attached, or detached where the robot is taken apart.
+/// The batches as they are attached, or as they are detached where the robot is taken apart.
 py::list order_batches(const io::OrderReport& report) {
   py::list out;
   for (const plan::Batch& batch : report.result.order.steps) {
@@ -237,7 +237,7 @@ std::shared_ptr<io::MoveReport> move(const Structure& start, const Structure& ta
       without_gil(watch, [&] { return seek_moves(start.document, target.document, request); })));
 }
 
-/// From, to, carrier or None, of every move of every step.
+/// The moves of every step, each as from, to, and carrier or None.
 py::list move_steps(const io::MoveReport& report) {
   const auto triple = [](const base::Cell& cell) { return py::make_tuple(cell.x, cell.y, cell.z); };
   py::list out;

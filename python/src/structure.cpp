@@ -139,8 +139,8 @@ void keep_carried_loads(io::Document& document, const std::vector<base::Cell>& p
                 [&](const model::Payload& payload) { return !there.contains(payload.cell); });
 }
 
-/// The same robot with other planned modules, and no further steps. Those that are planned again
-/// keep their kinds, masses and loads.
+/// The robot with other planned modules and no further steps. Modules that are planned again keep
+/// their kinds, masses and loads.
 SharedStructure with_planned(const Structure& structure, const py::handle& planned) {
   io::Document document = structure.document;
   const auto cells = cells_of(planned, "planned");
@@ -158,7 +158,7 @@ SharedStructure with_planned(const Structure& structure, const py::handle& plann
   return share(without_gil([&] { return make_structure(std::move(document), structure.name); }));
 }
 
-/// The same robot with its planned modules attached; further steps move up.
+/// The robot with its planned modules attached; further steps move up.
 SharedStructure attached(const Structure& structure) {
   io::Document document = structure.document;
   if (!document.steps.empty()) {
@@ -246,7 +246,7 @@ py::dict material(const Structure& structure) {
   return out;
 }
 
-/// From a node through each facet, in the order of directions: vectors of length one.
+/// Unit vectors from a node through each of its facets, in the order of directions.
 py::array_t<double> directions(const Structure& structure) {
   const base::Lattice& lattice = structure.robot.lattice();
   const auto range = base::facet_directions(lattice);

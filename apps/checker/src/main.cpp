@@ -85,7 +85,7 @@ const char* caveat(certificate::Law law, const certificate::Verification& found)
   return "";
 }
 
-/// Of which robot all this is.
+/// Shows which robot the certificate is of.
 void show_robot(const certificate::Certificate& made) {
   std::printf("  robot       %s\n  digest      %s\n",
               certificate::robot_words(made.name, made.modules.size(), made.planned_count).c_str(),

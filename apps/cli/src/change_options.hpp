@@ -24,8 +24,8 @@ struct ChangeOptions {
 /// `time` says what times are given in.
 void add_change_options(CLI::App& command, ChangeOptions& options, const std::string& time);
 
-/// None, and what is wrong is printed, if a text is no place and time. `ticks` turns times as given
-/// into those of the robot.
+/// Reads the changes; none, and the fault is printed, if a text is no place and time. `ticks`
+/// converts times as given into the robot's.
 std::optional<std::vector<Change>> read_changes(const ChangeOptions& options,
                                                 const std::function<sim::Time(double time)>& ticks);
 

@@ -38,7 +38,7 @@ struct EmulateArguments {
   std::string svg;
   bool is_quiet = false;
 
-  /// Of files, each with its option.
+  /// The files to be written, each with its option.
   Outputs outputs() const {
     return {{"--json", json, FileFormat::kJson}, {"--svg", svg, FileFormat::kSvg}};
   }

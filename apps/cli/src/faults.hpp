@@ -17,7 +17,7 @@ struct FaultPlace {
   double time = 0;
 };
 
-/// None if the text is no place of an existing module.
+/// Reads the place of a fault; none if the text is no place of an existing module and time.
 std::optional<FaultPlace> read_fault_place(std::string_view text, bool has_face,
                                            const Structure& structure);
 

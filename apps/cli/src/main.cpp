@@ -94,7 +94,7 @@ void occupy_standard_descriptors() {
   }
 }
 
-/// Without memory of its own: there may be none.
+/// Reports that memory has run out, without allocating any.
 int fail_out_of_memory() {
   std::fputs(
       "holdfast: out of memory: the structure is too large for this machine, or for the limit "

@@ -46,7 +46,7 @@ struct SimulateArguments {
   bool asks_next = false;
   bool is_quiet = false;
 
-  /// Of files, each with its option.
+  /// The files to be written, each with its option.
   Outputs outputs() const {
     return {{"--json", json, FileFormat::kJson},
             {"--trace", trace},

@@ -38,10 +38,10 @@ struct Reply {
 // One program, one caller, one call at a time.
 std::vector<std::uint8_t> input;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 Reply reply;                      // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
-/// That was judged last.
+/// The sequence that was judged last.
 std::optional<SequenceView> sequence;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 
-/// Of the robot and role that were tried last.
+/// The trials of the robot and role that were tried last.
 struct KeptTrials {
   std::vector<std::uint8_t> asked;  ///< The request without its cells.
   CellTrials trials;
@@ -75,7 +75,7 @@ Json vector_json(const std::array<double, 3>& vector) {
   return Json::array({vector[0], vector[1], vector[2]});
 }
 
-/// Of all modules, mm.
+/// The centre of mass of all modules, mm.
 std::array<double, 3> centre_of_mass(const model::Robot& robot) {
   std::array<double, 3> centre{};
   double mass = 0;
@@ -272,7 +272,7 @@ base::Result<CellTrials*> trials_for(const Request& request) {
   return &kept_trials->trials;
 }
 
-/// With one more module of the Role in options[0] at each place of the tail. Text: a list of
+/// Tries one more module of the Role in options[0] at each place of the tail. Text: a list of
 /// verdicts, null where no module can be. Numbers: the largest load ratio (-1 if there is none) and
 /// the margin in mm (0 if it is fixed).
 Reply try_places(const Request& request) {

@@ -25,8 +25,8 @@ struct EnsembleReport {
 
 class Ensemble {
  public:
-  /// Of the options count link, method, degree_max and watch_for. There is no fault in them:
-  /// sim::find_floor_fault(), sim::find_options_fault().
+  /// Takes link, method, degree_max and watch_for from the options, in which
+  /// sim::find_floor_fault() and sim::find_options_fault() find no fault.
   Ensemble(Structure structure, sim::SimulationOptions options);
 
   const agent::Setup& setup() const { return setup_; }
@@ -35,7 +35,7 @@ class Ensemble {
 
   sim::Recorder& recorder() { return recorder_; }
 
-  /// Of the module that knows its cell and is told of the robot's plan.
+  /// The cell of the module that knows its cell and is told of the robot's plan.
   const base::Cell& first_cell() const { return structure_.document.modules.front().cell; }
 
   /// The run does not end: nothing is ever at rest.
