@@ -72,7 +72,7 @@ float host_ratio(const sim::Simulation& simulation, const model::Robot& robot,
   return ratio;
 }
 
-/// The same, asking the module itself first.
+/// The load ratio of a connection as the module itself knows it, or else the host.
 float find_ratio(const sim::Simulation& simulation, const model::Robot& robot,
                  const model::Connection& connection) {
   float ratio = 0;

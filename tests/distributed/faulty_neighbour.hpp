@@ -31,7 +31,7 @@ class FaultyNeighbour {
  public:
   FaultyNeighbour(const model::Robot& robot, const FaultyOptions& options);
 
-  /// As sim::Tamper.
+  /// Changes packets as a sim::Tamper.
   int tamper(sim::Time now, std::int32_t module, base::Direction face,
              std::span<std::uint8_t> packet, int size);
 

@@ -54,8 +54,8 @@ TEST(Fronts, robots_that_took_many_sweeps_take_few) {
   }
 }
 
-/// Of these the exact solver knows two solutions of the paper's law; by one of them a connection
-/// breaks. The one that is found first does not.
+/// The exact solver knows two solutions of the paper's law for each of these robots; in one of them
+/// a connection breaks. In the one that is found first none does.
 TEST(Fronts, no_robot_is_safe_that_another_solution_breaks) {
   for (const std::uint64_t seed : {7373U, 12085U, 31269U}) {
     SCOPED_TRACE(::testing::Message() << "random_robot(" << seed << ")");

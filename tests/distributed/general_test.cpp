@@ -188,7 +188,7 @@ void expect_like_exact(const model::RobotSpec& spec, std::uint64_t seed, Counts&
   EXPECT_LT(comparison.ratio_error(), 1) << comparison.text();
 }
 
-/// On floors and on walls.
+/// Compares random robots on floors and on walls.
 Counts compare_random_robots(const base::Lattice& lattice) {
   Counts counts;
   for (std::uint64_t seed = 0; seed < test::campaign(8U, 4U); ++seed) {
@@ -277,9 +277,10 @@ TEST(DistributedGeneral, is_undecided_where_feet_in_other_states_do_not_hold_it)
   }
 }
 
-/// By the paper's law a facet that presses with 6e-6 N, less than a millionth of what else acts on
-/// it, holds 1.9 N across, and a connection breaks; by the exact law it carries 0.55 of what it
-/// can. Without that facet the paper's law has no state here, and the exact law would decide alone.
+/// A facet that presses with 6e-6 N, less than a millionth of what else acts on it, holds 1.9 N
+/// across in the paper's law, and a connection breaks; in the exact law that connection carries
+/// 0.55 of its strength. Without the facet the paper's law has no state here, and the exact law
+/// would decide alone.
 TEST(DistributedGeneral, is_undecided_where_a_facet_that_hardly_presses_decides) {
   model::RobotSpec spec{.existing = {{0, 0, 0}, {0, -1, 0}, {0, 1, 0}, {1, 0, 0}, {-1, -1, 0}}};
   spec.support_z = std::nullopt;
@@ -292,8 +293,8 @@ TEST(DistributedGeneral, is_undecided_where_a_facet_that_hardly_presses_decides)
   EXPECT_EQ(comparison.result.answer.reason, agent::Reason::kAmbiguousFeet);
 }
 
-/// By the law that is asked second a facet is pulled sideways by eleven times what presses it, more
-/// than its friction: forces of both laws are asked.
+/// The law that is asked second pulls a facet sideways by eleven times what presses it, which is
+/// more than its friction: the forces of both laws count.
 TEST(DistributedGeneral, is_undecided_where_a_facet_slips_by_one_of_both_laws) {
   model::RobotSpec spec{.existing = {{0, 0, 0}, {1, 0, 0}, {1, 0, -1}, {1, 0, -2}, {0, 0, -2}}};
   spec.fixed = {{1, 0, 0}};

@@ -262,8 +262,8 @@ TEST(Kept, no_module_takes_the_cell_of_a_fixed_one) {
   EXPECT_FALSE(simulate_steps(file, {}).has_value());
 }
 
-/// Without either arm alone the robot would tip over; taken one by one from the inner end it would
-/// be in pieces.
+/// The robot would tip over without either arm alone; arms that are taken one by one from the inner
+/// end would leave it in pieces.
 TEST(Kept, a_step_counts_as_a_whole) {
   StepsFile file =
       growing({{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {2, 0, 1}, {-1, 0, 1}, {-2, 0, 1}}, {});

@@ -165,7 +165,7 @@ TEST(ManyPlanned, more_than_thirty_are_too_many) {
   expect_all(simulation, agent::Verdict::kUndecided, agent::Reason::kPlannedTooMany);
 }
 
-/// Without its memory a module plans five, and says so.
+/// A module without lent memory plans five, and says so.
 TEST(ManyPlanned, five_are_planned_where_no_memory_is_lent) {
   model::RobotSpec spec;
   spec.existing = {{0, 0, 0}};

@@ -71,7 +71,7 @@ class MishapRun {
 
   Time round() const { return plain_.verdict_time; }
 
-  /// Of the first round, or behind it, where verdicts are renewed.
+  /// A time in the first round, or after it, when verdicts are renewed.
   Time some_time() {
     const Time from = rng_.below(3) == 0 ? 0 : round() + 20;
     return from + rng_.below(round() + 1);

@@ -187,7 +187,8 @@ TEST(SimulatedNext, knows_a_floor_on_which_nothing_stands_yet) {
   EXPECT_EQ(by_cell(next.next.candidates).at({1, 0, 0}).verdict, Verdict::kUndecided);
 }
 
-/// The same of obstacles; none of their cells is a place.
+/// The robot is held by a module that touches nothing; only what comes would touch obstacles, whose
+/// cells are no places.
 TEST(SimulatedNext, knows_obstacles_that_nothing_touches_yet) {
   const model::RobotSpec spec{
       .existing = {{0, 0, 0}, {1, 0, 0}},

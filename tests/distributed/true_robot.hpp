@@ -35,11 +35,11 @@ class TrueRobot {
     return ((modules_[at(module)].open >> static_cast<unsigned>(base::index(face))) & 1U) != 0;
   }
 
-  /// For each module the part of the robot that it is connected with, by the lowest index in it; -1
-  /// if it is not attached. `by_word`: over living modules and links that carry.
+  /// The part of the robot that each module is connected with, by the lowest index in it; -1 if the
+  /// module is not attached. `by_word`: over living modules and links that carry.
   std::vector<std::int32_t> parts(bool by_word) const;
 
-  /// For each module the exact verdict of its part; kUndecided if it is not attached.
+  /// The exact verdict of each module's part; kUndecided if the module is not attached.
   std::vector<verdict::Verdict> verdicts() const;
 
   /// Is no module silent, no link cut, nothing apart?
@@ -74,7 +74,7 @@ class TrueRobot {
   std::vector<Plan> plans_;
 };
 
-/// From when to when each module shows `safe`.
+/// Records from when to when each module shows `safe`.
 class SafeTimes : public sim::TraceSink {
  public:
   struct Stretch {

@@ -38,7 +38,7 @@ TEST(Distributed, every_scenario_is_decided_like_the_exact_answer) {
   }
 }
 
-/// On bush_tips_a and crane_tips_a Eq. (14) diverges; the robot notices and goes on with blocks.
+/// Eq. (14) diverges on bush_tips_a and crane_tips_a; the robot notices and goes on with blocks.
 TEST(Distributed, the_published_method_and_its_safer_form_come_to_the_same_answer) {
   for (const char* name : test::campaign({"crane_tips_a", "bush_tips_a", "arm_tips_a"})) {
     SCOPED_TRACE(name);

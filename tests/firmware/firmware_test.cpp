@@ -104,7 +104,7 @@ std::string stem_of(const ::testing::TestParamInfo<std::string>& path) {
 INSTANTIATE_TEST_SUITE_P(Firmware, EveryScenario,
                          ::testing::ValuesIn(paths_in(HOLDFAST_SCENARIO_DIR)), stem_of);
 
-/// Those with the most to do at one module.
+/// The scenarios with the most to do at one module.
 INSTANTIATE_TEST_SUITE_P(HardForFirmware, EveryScenario,
                          ::testing::ValuesIn(paths_in(HOLDFAST_HARD_DIR)), stem_of);
 

@@ -100,8 +100,8 @@ TEST(RobotsBetweenWalls, have_the_same_answer_when_their_pressure_is_rounding) {
   }
 }
 
-/// By the paper's law the weak springs of open facets pull, of tilted ones (305) bend back; then
-/// the exact law is asked, too.
+/// The weak springs of open facets pull in the paper's law, those of tilted ones (305) bend back;
+/// then the exact law is asked, too.
 TEST(RobotsWithOpenFacets, are_judged_by_both_laws) {
   for (const std::uint64_t seed : {std::uint64_t{268}, std::uint64_t{587}, std::uint64_t{305}}) {
     SCOPED_TRACE(::testing::Message() << "general_robot " << seed);

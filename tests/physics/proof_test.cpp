@@ -67,7 +67,8 @@ TEST(Proof, proves_every_scenario_that_stands) {
   }
 }
 
-/// Also where displacements in double have no digits of the loads left.
+/// The shown ratio lies in the range even where displacements in double have no digits of the
+/// loads.
 TEST(Proof, shows_a_load_ratio_inside_its_range) {
   for (const auto& file : std::filesystem::directory_iterator(HOLDFAST_NEAR_LIMIT_DIR)) {
     SCOPED_TRACE(file.path().filename().string());

@@ -51,7 +51,7 @@ std::string imbalance(const model::Robot& robot, const Assessment& assessment) {
   return {};
 }
 
-/// The same law in all directions, and one that knows no axes.
+/// Gives all directions one law, which knows no axes.
 void take_round_law(model::RobotSpec& spec) {
   model::ModuleKind kind = model::default_kind(spec.material, spec.lattice);
   std::fill(kind.connectors.begin(), kind.connectors.end(),

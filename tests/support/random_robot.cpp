@@ -14,7 +14,7 @@ using base::Cell;
 
 class Builder {
  public:
-  /// Of `count_min` to `count_max` modules.
+  /// Builds a robot of `count_min` to `count_max` modules.
   Builder(std::uint64_t seed, std::size_t count_min, std::size_t count_max)
       : rng_(seed), count_max_(count_min + rng_.below(count_max - count_min + 1)) {}
 
