@@ -29,7 +29,7 @@ struct IntegerRange {
 template <class Number>
 std::optional<Number> parse_number(std::string_view text);
 
-/// Three numbers separated by commas.
+/// Reads three numbers separated by commas.
 template <class Number>
 std::optional<std::array<Number, 3>> parse_triple(std::string_view text);
 

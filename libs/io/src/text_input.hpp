@@ -25,7 +25,7 @@ std::string_view trimmed(std::string_view text);
 /// The text without its byte order mark, if it has one.
 std::string_view without_bom(std::string_view text);
 
-/// "line 12", for Error::where. Takes time proportional to the offset.
+/// Writes "line 12", for Error::where. Takes time proportional to the offset.
 std::string line_at(std::string_view text, std::size_t offset);
 
 /// An input that is blank, too large, not UTF-8 or holds a zero byte, whatever its format.

@@ -19,7 +19,7 @@ inline ReadDocument accepted(base::Result<ReadDocument> read) {
   return read ? std::move(read).value() : ReadDocument{};
 }
 
-/// holdfast JSON: these members, after the keys that must be there.
+/// A holdfast JSON text with these members, after the keys that must be there.
 inline std::string json(std::string_view members) {
   return R"({"format": "holdfast-structure", "version": 1, )" + std::string(members) + "}";
 }

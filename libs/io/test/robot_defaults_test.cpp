@@ -128,7 +128,7 @@ TEST(RobotDefaults, are_those_of_the_robot_that_is_asked_for) {
   EXPECT_EQ(xml.material.mass_kg, 0.35);
 }
 
-/// So that the page for people and the schema for editors say what the program has.
+/// The page for people and the schema for editors say what the program has.
 TEST(RobotDefaults, are_documented_with_every_source) {
   const std::string page = document_text("robots.md");
   const std::string schema = document_text("structure.schema.json");

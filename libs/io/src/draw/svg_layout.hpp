@@ -90,7 +90,7 @@ struct Scene {
   /// The height of the floor, if there is one.
   double floor_z() const;
 
-  /// Something rests on the ground, so there is a support polygon.
+  /// Whether something rests on the ground, so that there is a support polygon.
   bool has_polygon() const { return !assessment.simplified.polygon.empty(); }
 
   /// The floor is shown as a plane: something touches it, and nothing hangs below it.
@@ -114,7 +114,7 @@ struct Scene {
   /// How much of a box the robot covers, 0 to 1, from samples.
   double covered_share(const Box& box) const;
 
-  /// Opacity of planned modules, or of ghosts, through which the robot has to be seen.
+  /// The opacity of planned modules, or of ghosts, through which the robot has to be seen.
   const char* glass() const { return ghost_count > 0 ? "0.3" : "0.7"; }
 
   bool is_ghost(std::size_t module) const { return module + ghost_count >= robot.modules().size(); }

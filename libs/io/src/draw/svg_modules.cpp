@@ -12,10 +12,11 @@
 namespace holdfast::io {
 namespace {
 
-/// Below this size the outlines of single modules would only darken the picture.
+/// The size of a cube's edge below which outlines of single modules would only darken the picture.
 constexpr double kInnerLinePxMin = 2.5;
 
-/// Below this size so would all outlines but those of the whole.
+/// The size of a cube's edge below which all outlines but those of the whole would darken the
+/// picture.
 constexpr double kOutlinePxMin = 1.5;
 
 struct Widths {

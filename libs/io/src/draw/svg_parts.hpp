@@ -29,7 +29,7 @@ std::string draw_card(const Scene& scene, std::string_view title);
 
 std::string draw_header(const Scene& scene, std::string_view title);
 
-/// Grid, coordinates and support polygon, below the robot.
+/// Draws the grid, the coordinates and the support polygon, below the robot.
 std::string draw_ground(const Scene& scene);
 
 std::string draw_modules(const Scene& scene);
@@ -88,13 +88,14 @@ std::string draw_balance(const Scene& scene);
 /// known.
 const limit::Motion* fall_of(const Scene& scene);
 
-/// That motion: over which edge or about which axis, and where the centre of mass goes.
+/// Draws how the robot begins to fall: over which edge or about which axis, and where the centre of
+/// mass goes.
 std::string draw_fall(const Scene& scene);
 
 /// What labels should not hide: the centre of mass, its foot, the toppling edge and its arrow.
 std::vector<ScreenPoint> balance_signs(const Scene& scene);
 
-/// Broken connections and the worst one.
+/// Draws the broken connections and the worst one.
 std::string draw_marks(const Scene& scene);
 
 /// How much the worst connection carries, or how far the centre of mass lies outside.

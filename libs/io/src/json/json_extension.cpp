@@ -96,7 +96,8 @@ void read_floor(JsonReading& reading, const Json& value, const JsonPlace& place)
   }
 }
 
-/// Straight down it is what the material says, which version 1 can say too.
+/// Reads gravity; if it points straight down, it becomes that of the material, which version 1 can
+/// say.
 void read_gravity(JsonReading& reading, const Json& value, const JsonPlace& place) {
   const std::array<double, 3> gravity = vector(reading, value, place);
   Document& document = reading.document;

@@ -302,7 +302,7 @@ std::vector<Element> JsonReader::targets(const Json& value, const JsonPlace& pla
   return list;
 }
 
-/// `step` is that of OwnParameters.
+/// Reads a list of modules; `step` is that of OwnParameters.
 template <class Entry>
 std::vector<Entry> JsonReader::entries(const Json& value, const JsonPlace& place,
                                        std::size_t step) {
@@ -318,7 +318,7 @@ std::vector<Entry> JsonReader::entries(const Json& value, const JsonPlace& place
   return list;
 }
 
-/// `own` says which module it is; kept if the entry has parameters of its own.
+/// Reads a module; `own` says which one it is, and is kept if the module has parameters of its own.
 template <class Entry>
 Entry JsonReader::entry(const Json& value, const JsonPlace& place, OwnParameters own) {
   constexpr bool kIsModule = std::is_same_v<Entry, ModuleEntry>;

@@ -158,7 +158,7 @@ std::span<const OwnParameters> own_of(const Extension& extension, std::size_t st
                static_cast<std::size_t>(last - first));
 }
 
-/// "planned" and "later_steps".
+/// Writes "planned" and "later_steps".
 void add_steps(Items& members, const Document& document) {
   const std::vector<Step>& steps = document.steps;
   if (!steps.empty() && !steps.front().empty()) {

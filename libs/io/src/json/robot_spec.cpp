@@ -196,7 +196,7 @@ std::optional<base::Error> add_own(const Document& document,
   return std::nullopt;
 }
 
-/// Existing modules and all around them, without what single modules have of their own.
+/// The existing modules and all around them, without parameters of single modules.
 model::RobotSpec start_of(const Document& document) {
   const Extension& extension = document.extension;
   model::RobotSpec spec{.material = document.material,

@@ -118,7 +118,7 @@ void write_solver(Out out, const verdict::Assessment& assessment, double seconds
                  time);
 }
 
-/// Rounded outwards to about twelve digits.
+/// Writes the proved range, rounded outwards to about twelve digits.
 void write_proof(Out out, const ReportEntry& entry) {
   constexpr double kOutwards = 1e-12;
   const certificate::Verification& found = entry.proof->verification;

@@ -16,7 +16,7 @@ namespace {
 using plan::StageJudgement;
 using verdict::Verdict;
 
-/// Up to so many steps each has its line.
+/// The number of steps up to which each has its line.
 constexpr std::size_t kListedMax = 40;
 
 /// The number of steps that are not safe and have a line where there are more than kListedMax
@@ -31,7 +31,7 @@ bool is_safe(const plan::StepJudgement& step) {
   return std::ranges::all_of(step.stages, &plan::Judgement::is_safe);
 }
 
-/// "0.8376 +12.00", "-" where there is none.
+/// Writes "0.8376 +12.00", and "-" where there is none.
 std::string numbers_text(const StageJudgement& stage) {
   const std::string ratio = stage.load_ratio_max ? beside_one(*stage.load_ratio_max, 4) : "-";
   const std::string margin =

@@ -32,7 +32,7 @@ std::vector<SeenFace> seen(const std::vector<ShapeFace>& faces) {
   return all;
 }
 
-/// Corner `i` of the circle around a disc's face that is at y.
+/// The corner `i` of the circle around a disc's face that is at y.
 Place disc_corner(int i, double y) {
   const double angle = 2 * std::numbers::pi * i / kDiscCorners;
   return {0.5 * std::cos(angle), y, 0.5 * std::sin(angle)};

@@ -49,7 +49,8 @@ class BodyView {
 
   const NearObstacles& obstacles() const { return obstacles_; }
 
-  /// Back to front: obstacles behind, then what is among the modules, then obstacles in front.
+  /// All items from back to front: obstacles behind, then what is among the modules, then obstacles
+  /// in front.
   std::span<const BodyItem> items() const { return items_; }
 
   base::Cell cell_of(const BodyItem& item) const;

@@ -23,7 +23,7 @@ constexpr ScreenPoint seen_at(const Place& place) {
   return {(place[0] + place[1]) * kCos30, (place[0] - place[1]) / 2 - place[2]};
 }
 
-/// Larger is nearer to the eye.
+/// How near a place is to the eye; larger is nearer.
 constexpr double nearness(const Place& place) { return dot(place, kEye); }
 
 }  // namespace holdfast::io

@@ -32,7 +32,7 @@ struct ModulePaint {
 /// Whether the assessment says what every connection carries.
 bool has_loads(const model::Robot& robot, const verdict::Assessment& assessment);
 
-/// Per module.
+/// The paint of each module.
 std::vector<ModulePaint> paint_modules(const model::Robot& robot,
                                        const verdict::Assessment& assessment);
 
@@ -40,7 +40,7 @@ std::vector<ModulePaint> paint_modules(const model::Robot& robot,
 Color load_color(int percent);
 Color color_of(const ModulePaint& paint);
 
-/// Mixed with white, by so many percent.
+/// Mixes a colour with so many percent of white.
 Color lightened(Color color, int percent);
 
 /// A face by its direction: light falls from above and from the left.
@@ -50,7 +50,7 @@ Color shaded(Color color, Side side);
 /// side.
 Color shaded(Color color, const Place& normal);
 
-/// "#rrggbb".
+/// Writes "#rrggbb".
 std::string hex(Color color);
 
 inline constexpr Color kBrokenColor = {.red = 214, .green = 32, .blue = 43};

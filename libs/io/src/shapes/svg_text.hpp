@@ -63,7 +63,7 @@ class Path {
 /// One path in as many elements as it takes: readers refuse what is longer than 10 million bytes.
 class PathElements {
  public:
-  /// `attributes` are those of every element, besides the data.
+  /// The elements have these attributes besides the data.
   explicit PathElements(std::string attributes) : attributes_(std::move(attributes)) {}
 
   /// Where the next piece goes, which begins with move_to. For that piece only.

@@ -58,15 +58,16 @@ struct VisibleEdge {
   std::int8_t far_side = 0;
 };
 
-/// Whose faces are looked for. Planned modules are drawn as glass, so there are two pictures.
+/// The modules whose faces are looked for. Planned modules are drawn as glass, so there are two
+/// pictures.
 enum class Cast : std::uint8_t { kExisting, kAll };
 
 class VisibleSurface {
  public:
-  /// O(n log n) for n modules. Keeps a reference to the robot.
+  /// Keeps a reference to the robot; O(n log n) for n modules.
   VisibleSurface(const model::Robot& robot, Cast cast);
 
-  /// Sorted by u and middle, each triangle once.
+  /// The visible triangles, sorted by u and middle, each once.
   std::span<const Triangle> triangles() const { return triangles_; }
 
   /// Whether something is drawn over this point of the picture.
@@ -75,8 +76,8 @@ class VisibleSurface {
   /// The visible faces, by module, then by side.
   std::vector<VisibleFace> faces() const;
 
-  /// Each once; those of existing modules are joined into long lines, those of planned modules are
-  /// single cube edges, so that dashes meet in the corners.
+  /// The visible edges, each once; those of existing modules are joined into long lines, those of
+  /// planned modules are single cube edges, so that dashes meet in the corners.
   std::vector<VisibleEdge> edges() const;
 
  private:

@@ -68,7 +68,7 @@ void read_extension(XmlReading& reading, const pugi::xml_node& node) {
   read_extension_text(reading, text, [&] { return node ? reading.line(node) : std::string(); });
 }
 
-/// <holdfast>: what our writer adds to the file.
+/// Reads <holdfast>, which our writer adds to the file.
 void read_own_element(XmlReading& reading, const pugi::xml_node& node) {
   Document& document = reading.document;
   reading.expect_attributes(node, own_element_names());

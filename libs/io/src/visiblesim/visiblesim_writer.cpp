@@ -16,7 +16,7 @@
 namespace holdfast::io {
 namespace {
 
-/// pugixml tells with an empty handle, not with an exception, that there is no memory left.
+/// Appends an element, or throws if there is no memory, which pugixml reports by an empty handle.
 pugi::xml_node append(pugi::xml_node parent, const char* name) {
   const pugi::xml_node node = parent.append_child(name);
   if (!node) {

@@ -40,8 +40,9 @@ bool is_read(std::string_view entity) {
                                   : std::ranges::find(kNamed, entity) != std::end(kNamed);
 }
 
-/// Depth and number of elements, and entities in attributes, in one pass before the parser takes
-/// memory for them. Goes from '<' to '<'; whether the text is well-formed is left to the parser.
+/// Counts the depth and number of elements, and entities in attributes, in one pass before the
+/// parser takes memory for them. Goes from '<' to '<'; whether the text is well-formed is left to
+/// the parser.
 class ShapeCheck {
  public:
   explicit ShapeCheck(std::string_view text) : text_(text) {}

@@ -40,20 +40,20 @@ class XmlReading : public Reading {
   /// The attributes for which `is_read` is false.
   Attributes attributes(const pugi::xml_node& node, bool (*is_read)(std::string_view name));
 
-  /// nullptr, and a failure, if there is none.
+  /// The value of an attribute; nullptr, and a failure, if there is none.
   const char* required(const pugi::xml_node& node, const char* name);
 
   // Of an attribute that is there.
   double number(const pugi::xml_node& node, const pugi::xml_attribute& attribute);
 
-  /// It may be written as "2.0".
+  /// Reads an integer, which may be written as "2.0".
   std::int32_t integer(const pugi::xml_node& node, const pugi::xml_attribute& attribute,
                        IntegerRange range);
 
-  /// Attribute "position".
+  /// Reads the attribute "position".
   base::Cell cell(const pugi::xml_node& node);
 
-  /// Attribute "color", if there is one.
+  /// Reads the attribute "color", if there is one.
   std::optional<Color> color(const pugi::xml_node& node);
 
   /// What our writer has added to every cell, lest any be negative, by the attribute of <holdfast>.

@@ -63,7 +63,7 @@ Value written(const Value& value) {
   return value;
 }
 
-/// VTK's word for a type.
+/// VTK's name of a type.
 template <class Number>
 constexpr const char* kTypeName = nullptr;
 template <>
@@ -241,8 +241,8 @@ class Writer {
                         always(decltype(of_module(std::size_t{})){}));
   }
 
-  /// `of_point` gets a module and a point of it, from its node, mm; `of_obstacle` a cell and the
-  /// same.
+  /// Announces an array by point: `of_point` gets a module and a point of it, from its node, mm;
+  /// `of_obstacle` a cell and the same.
   template <class OfPoint, class OfObstacle>
   void announce_point_array(const char* name, OfPoint of_point, OfObstacle of_obstacle) {
     const double pitch = robot_.material().pitch_mm;

@@ -60,7 +60,7 @@ struct BinaryHead {
 
 static_assert(sizeof(BinaryHead) == 72);
 
-/// FNV-1a, 64 bits.
+/// The FNV-1a sum of a text, 64 bits.
 std::uint64_t text_sum(std::string_view text);
 
 /// A sum that can be made in parts: of a hash of each record and its number in the whole structure,
@@ -107,7 +107,7 @@ void write_binary(std::ostream& out, const BinaryStructure& structure);
 /// What a document has that a binary structure has no room for; empty if nothing.
 std::vector<std::string> lost_in_binary(const Document& document);
 
-/// Error::where is the byte, or a place in the text.
+/// Reads a binary structure; Error::where is the byte, or a place in the text.
 base::Result<ReadDocument> read_binary(std::string_view bytes, const ReadOptions& options = {});
 
 }  // namespace holdfast::io

@@ -126,9 +126,9 @@ base::Result<base::Cell> visiblesim_shift(const Document& document);
 inline constexpr std::int64_t kBoxCellsMax = 10'000;
 bool is_large_box(const model::Obstacle& obstacle);
 
-/// Reading back gives an equal document. Comments and the layout of the text are not kept, and
-/// blocksLine and blockBox are written as single blocks. Where visiblesim_shift is an error, cells
-/// are written as they are.
+/// Writes a document; reading it back gives an equal one. Comments and the layout of the text are
+/// not kept, and blocksLine and blockBox are written as single blocks. Where visiblesim_shift is an
+/// error, cells are written as they are.
 std::string write_visiblesim(const Document& document);
 std::string write_json(const Document& document);
 
@@ -145,14 +145,14 @@ base::Result<model::RobotSpec> make_spec(const Document& document);
 /// A robot and what happens to it.
 struct Sequence {
   model::RobotSpec start;  ///< The existing modules.
-  /// Document::steps from first_step() on, each as a step that attaches its modules, then the plan.
-  /// A load on a cell where no module is at first belongs to the first step that attaches one
-  /// there.
+  /// The steps of the document from first_step() on, each as a step that attaches its modules, then
+  /// the plan. A load on a cell where no module is at first belongs to the first step that attaches
+  /// one there.
   std::vector<model::Step> steps;
 };
 
-/// Which of Document::steps is the first step of make_sequence(): the second, index 1, where
-/// nothing is planned.
+/// Returns the index in Document::steps of the first step of make_sequence(): 1 where nothing is
+/// planned.
 std::size_t first_step(const Document& document);
 
 /// The number of steps of make_sequence().
@@ -165,7 +165,7 @@ std::string step_pointer(const Document& document, std::size_t step);
 /// Where the file lists steps beyond the first, or would list them.
 std::string step_list(const Document& document);
 
-/// Errors: as of make_spec().
+/// Makes the sequence of a document. Errors: those of make_spec().
 base::Result<Sequence> make_sequence(const Document& document);
 
 /// The error of a robot that could not be made of the document, with the lattice in which its

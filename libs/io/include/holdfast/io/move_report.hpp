@@ -27,7 +27,7 @@ base::Result<model::RobotSpec> standing_spec(const Document& document, std::stri
 /// each of them.
 base::Result<plan::MoveTask> move_task(const Document& start, const Document& target);
 
-/// See docs/formats.md.
+/// The report in JSON; see docs/formats.md.
 std::string move_json(const MoveReport& report);
 
 /// Lines for people; a line feed at the end.

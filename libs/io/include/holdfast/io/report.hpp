@@ -53,7 +53,7 @@ struct ReportEntry {
   const WholeRobot* whole = nullptr;        ///< If the robot is a part: no connections are listed.
 };
 
-/// Which connections a report or table lists.
+/// The connections that a report or table lists.
 struct ConnectionChoice {
   enum class Kind : std::uint8_t {
     kAll,      ///< In the robot's order.
