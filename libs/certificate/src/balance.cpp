@@ -7,7 +7,7 @@ namespace {
 
 constexpr const char* kTooLarge = "a force is too large for the numbers of the proof";
 
-/// Rotation about x or y, and the state's tilt about it.
+/// A rotation about x or y, and the state's tilt about it.
 struct Tilt {
   std::size_t index;
   int sign;

@@ -14,7 +14,7 @@ class Ball {
  public:
   constexpr Ball() = default;
 
-  /// Exactly this number.
+  /// The ball of exactly this number.
   constexpr Ball(double value) : middle_(value) {}  // NOLINT: numbers are balls.
 
   constexpr Ball(double middle, double radius) : middle_(middle), radius_(radius) {}
@@ -67,7 +67,7 @@ class Ball {
   static constexpr double kUnit = std::numeric_limits<double>::epsilon() / 2;
   static constexpr double kTiny = 1e-300;  ///< More than underflow can lose.
 
-  /// Above what was rounded to this: by two units in the last place or more.
+  /// Rounds up: adds two units in the last place or more to a rounded value.
   static double upward(double value) {
     const double above = value + (std::abs(value) * (4 * kUnit) + kTiny);
     return std::isnan(above) ? kInfinity : above;

@@ -136,7 +136,7 @@ bool Structure::plant(const Certificate& certificate, bool is_full_only) {
   return !order_.empty();
 }
 
-/// Breadth first, so ways are short.
+/// Goes breadth first, so that paths are short.
 void Structure::grow() {
   for (std::size_t next = 0; next < order_.size(); ++next) {
     const std::size_t module = order_[next];

@@ -22,7 +22,7 @@ constexpr int kZ = 2;
 
 using Springs = std::array<Ball, 6>;
 
-/// Its nearest double, which is as near as the sum with zero is rounded.
+/// The ball of an integer: its nearest double, and the rounding of a sum with zero.
 inline Ball ball_of(Integer value) { return Ball(0) + Ball(static_cast<double>(value)); }
 
 struct Beam {
@@ -43,7 +43,8 @@ struct Constants {
   std::array<Ball, 3> strength;  ///< Over W, by axis.
 };
 
-/// Cells, beams, facets, and on which way a module's load gets to the ground.
+/// The cells, beams and facets of a robot, and the path by which each module's load reaches the
+/// ground.
 class Structure {
  public:
   explicit Structure(const Certificate& certificate);
@@ -84,7 +85,7 @@ class Structure {
   std::vector<std::size_t> depth_;
 };
 
-/// w of a beam, or of the facet of module b.
+/// The gap w of a beam, or of the facet of a module.
 Six gap(const Field& field, const Beam& beam);
 Six facet_gap(const Field& field, std::size_t module);
 

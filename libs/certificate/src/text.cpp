@@ -44,14 +44,14 @@ void append(std::string& text, Number number) {
   text.append(digits, end.ptr);
 }
 
-/// So many digits that the same double is read again.
+/// Writes as many digits as it takes to read the same double again.
 void append(std::string& text, double number) {
   char digits[32];
   std::snprintf(digits, sizeof digits, "%.17g", number);
   text += digits;
 }
 
-/// Hexadecimal, with a sign.
+/// Writes an integer in hexadecimal digits, with a minus sign if it is negative.
 void append_integer(std::string& text, Integer value) {
   constexpr unsigned kDigits = 32;
   char digits[kDigits];
@@ -111,7 +111,7 @@ void append_material(std::string& text, const Certificate& certificate) {
   text += '\n';
 }
 
-/// Its cell, and what holds it.
+/// Writes a module's cell and what holds it.
 void append_module(std::string& text, const Certificate& certificate, const Module& module) {
   for (const std::int32_t coordinate : module.cell) {
     append(text, coordinate);

@@ -13,7 +13,7 @@ namespace holdfast {
 verdict::Assessment view_of(const model::Robot& robot, const verdict::Assessment& exact,
                             const Agents& agents, const sim::SimulationResult& result);
 
-/// Which connection the robot names, and its limit.
+/// Notes which connection the robot names as the worst, and its limit.
 void note_worst(const model::Robot& robot, DistributedRun& run);
 
 /// Whether the robot has load ratios of another contact law than the exact answer.

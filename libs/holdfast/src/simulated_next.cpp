@@ -44,8 +44,8 @@ void add_face(Place& place, const agent::FreeFace& face) {
   }
 }
 
-/// Do its modules judge all free faces together? Where more is known to them than cubes on a floor
-/// every cell is planned in turn; also where only what comes would touch more.
+/// Whether the robot's modules judge all free faces together. Every cell is planned in turn where
+/// modules know more than cubes on a floor, or would touch more once one comes.
 bool judges_faces(const model::RobotSpec& spec, const model::Robot& robot) {
   return !model::find_beyond_paper(robot).has_value() && spec.obstacles.empty() &&
          spec.floor == model::Touch{};
@@ -181,9 +181,9 @@ bool can_be(model::RobotSpec robot, const CellList& more) {
   return model::Robot::create(robot, 1).has_value();
 }
 
-/// Free cells in which a module can be, the robot being what it is, in groups of cells that modules
-/// can be in at once: below one that rests on the floor nothing is, and none rests on what is not
-/// there once something is below.
+/// Free cells in which a module can be, in groups of cells that modules can be in at once: no cell
+/// may lie below one that rests on the floor, and none may rest on a floor below which modules then
+/// are.
 std::vector<CellList> open_cells(const model::RobotSpec& whole) {
   std::vector<CellList> groups;
   for (const base::Cell& cell : free_cells(whole)) {

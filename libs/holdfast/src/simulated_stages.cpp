@@ -24,7 +24,7 @@ std::size_t at(Stage stage) { return static_cast<std::size_t>(stage); }
 /// The modules' name for a stage; they count from 1, as 0 is none.
 agent::Stage stage_of(Stage stage) { return static_cast<agent::Stage>(at(stage) + 1); }
 
-/// Which limit the connection with the largest load ratio is nearest to.
+/// The limit that the connection with the largest load ratio is nearest to.
 const char* limit_name(const agent::Answer& answer) {
   return model::name(static_cast<model::Limit>(answer.remarks & agent::kLimitBits));
 }

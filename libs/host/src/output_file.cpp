@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 /// The number of symbolic links that are followed, which is also the kernel's.
 constexpr int kLinkCountMax = 40;
 
-/// More names that are taken are no accident.
+/// The number of names that are tried: that more are taken is no accident.
 constexpr int kNameTrialMax = 16;
 
 base::Error unwritable(int error) {
@@ -139,7 +139,7 @@ class OutputFile::Writer {
     discard();
   }
 
-  /// These return the number of an error, 0 for none.
+  /// These functions return the number of an error, 0 for none.
   int open_copy(int descriptor) {
     std::fflush(stdout);
     return start(::fcntl(descriptor, F_DUPFD_CLOEXEC, 0), false);
@@ -150,7 +150,7 @@ class OutputFile::Writer {
                  is_file);
   }
 
-  /// `old` is what stands there already; nullptr for nothing.
+  /// Opens a file beside the target; `old` is what stands there already, nullptr for nothing.
   int open_temporary(const fs::path& target, const struct stat* old) {
     target_ = target;
     int error = EEXIST;

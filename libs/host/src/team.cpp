@@ -22,16 +22,16 @@ namespace {
 constexpr std::chrono::microseconds kSpinTime{100};
 constexpr int kSpinCount = 256;  ///< Turns between two looks at the clock.
 
-/// Who has somebody to ask whether to go on sleeps no longer than this: nobody would wake it.
+/// The longest sleep of a thread that has an `ask` to call, as nobody would wake it to do so.
 constexpr std::chrono::microseconds kNap{200};
 
 /// Chunks that are taken at once at most where somebody is asked before each.
 constexpr std::size_t kAskedChunkMax = 64;
 
-/// Thrown in threads whose loop has failed in another one, which nobody hears of.
+/// The exception of threads whose loop has failed in another thread; it never leaves the team.
 struct GivenUp {};
 
-/// False if it is still that value after some time.
+/// Spins while a variable has a value; returns false if it still has after some time.
 template <class Value>
 bool spin_while(const std::atomic<Value>& variable, Value value) {
   const auto end = std::chrono::steady_clock::now() + kSpinTime;
@@ -52,7 +52,7 @@ void wait_while(const std::atomic<Value>& variable, Value value) {
   }
 }
 
-/// Asked once: the answer is read from files.
+/// The number of cores, determined once, as that reads files.
 int core_count() {
   static const auto count = static_cast<int>(std::thread::hardware_concurrency());
   return count;

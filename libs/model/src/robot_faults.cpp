@@ -16,7 +16,8 @@ namespace {
 
 using base::Cell;
 
-/// Beyond this, products with other parameters leave the range of double (as in Material).
+/// The largest number: products with other parameters of larger ones leave the range of double (as
+/// in Material).
 constexpr double kNumberMax = 1e12;
 
 std::optional<std::string> find_size_fault(const RobotSpec& spec) {
@@ -185,7 +186,7 @@ std::optional<std::string> find_general_fault(const RobotSpec& spec) {
   return fault;
 }
 
-/// Which modules hang together [Galler and Fischer 1964].
+/// Finds which modules are connected with each other [Galler and Fischer 1964].
 class Parts {
  public:
   explicit Parts(std::size_t count) : parent_(count) {

@@ -43,7 +43,7 @@ constexpr int kPassMax = 8;
 constexpr double kRoundings = 4;
 constexpr double kGain = 0.3;
 
-/// So many of all spare bits of a number are left for the solution to grow.
+/// The number of spare bits that are left for the solution to grow.
 constexpr int kSpareBits = 6;
 
 Law law_of(ContactModel model) {
@@ -74,7 +74,7 @@ certificate::Material material_of(const model::Material& material) {
           .gamma = material.contact_gamma};
 }
 
-/// Everything but the fields.
+/// The certificate without its fields.
 Certificate certificate_of(const model::Robot& robot, const Assessment& assessment) {
   Certificate made;
   made.law = law_of(assessment.contact_model);
@@ -196,7 +196,7 @@ class Prover {
     }
   }
 
-  /// False if a solver gave up.
+  /// Improves all fields; returns false if a solver gave up.
   bool improve_all(solver::Method method, solver::Precision precision) {
     const std::unique_ptr<LinearSystem> system =
         solver::make_linear_system(robot_, {.memory_bytes_max = options_.memory_bytes_max,
@@ -233,8 +233,8 @@ class Prover {
     }
   }
 
-  /// Iterative refinement: the residual is that of the certificate's integers, so the digits that
-  /// differences of displacements lose are there.
+  /// Refines iteratively: the residual is that of the certificate's integers, which have the digits
+  /// that differences of displacements lose.
   bool improve(std::size_t field, int pass_max, const Residuals& residuals, LinearSystem& system) {
     double before = std::numeric_limits<double>::infinity();
     for (int pass = 0; pass < pass_max; ++pass) {
@@ -265,7 +265,7 @@ class Prover {
     return force;
   }
 
-  /// Weak springs in the approximate tangent only; what they add is refined away.
+  /// The weak springs of the approximate tangent; what they add is refined away.
   static constexpr double kUnilateralGamma = 1e-9;
 
   const model::Robot& robot_;

@@ -74,7 +74,7 @@ TEST(Proof, knows_no_floor_where_there_is_none) {
   }
 }
 
-/// Nothing is certified of another robot than the one that was asked about.
+/// The proof certifies no other robot than the one that was asked about.
 TEST(Proof, leaves_a_robot_with_released_pairs_undecided) {
   const Robot robot = Robot::create({.existing = {{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}},
                                      .fixed = {{0, 0, 1}},

@@ -41,14 +41,14 @@ bool has_noise(const LinkModel& link) {
          link.corruption > 0;
 }
 
-/// Have modules memory for fronts?
+/// Whether modules have memory for fronts.
 bool lends_fronts(const model::Robot& robot, const SimulationOptions& options) {
   return options.method ? options.method == agent::Method::kFronts
                         : !options.only_one_sweep && needs_environment(robot, options.step_end);
 }
 
-/// Have modules to keep more planned modules than they have room for themselves, those of a step's
-/// end included?
+/// Whether modules must keep more planned modules than they have room for themselves, those of a
+/// step's end included.
 bool plans_many(const model::Robot& robot, const SimulationOptions& options) {
   std::set<base::Cell> cells;
   for (std::size_t i = robot.modules().size() - robot.planned_count(); i < robot.modules().size();

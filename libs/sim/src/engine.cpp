@@ -69,9 +69,9 @@ bool Engine::run_for(std::uint64_t event_count) {
   return !is_over_;
 }
 
-/// Nothing is left to do but to watch over verdicts, and there is nothing to be found by that: no
-/// module has died and no link was cut so lately that modules may not know yet. `next`: when the
-/// next event comes.
+/// Whether modules only watch over verdicts, and there is nothing that they could find: no module
+/// has died and no link was cut so lately that modules may not know yet. `next` is the time of the
+/// next event.
 bool Engine::is_at_rest(Time next) const {
   if (work_count_ > 0) {
     return false;
@@ -230,7 +230,7 @@ void Engine::settle(std::int32_t module) {
   arm_timer(module);
 }
 
-/// Has the module finished computing? Then it sends, and turns to what has come meanwhile.
+/// Lets a module that has finished computing send, and turn to what has come meanwhile.
 void Engine::ready(std::int32_t module) {
   Port& port = ports_[at(module)];
   if (now_ < port.busy_until) {

@@ -23,7 +23,7 @@ class Engine {
  public:
   Engine(const model::Robot& robot, SimulationOptions options);
 
-  /// False: it is over.
+  /// Hands about `event_count` events to modules; returns false if the simulation is over.
   bool run_for(std::uint64_t event_count);
 
   void happen(const Fault& fault);

@@ -35,7 +35,7 @@ double find_mass_unit(const model::Robot& robot) {
   return is_counted ? static_cast<double>(divisor) * kMassDigitKg : 0;
 }
 
-/// Do all facets lie in one level plane, and can they lift, under weight alone, straight down?
+/// Whether all facets lie in one level plane and can lift, under weight alone, straight down.
 bool is_on_level_floor(const model::Robot& robot) {
   const auto& [x, y, z] = robot.gravity();
   if (x != 0 || y != 0 || z >= 0 || robot.has_payloads() || !robot.carried().empty()) {
@@ -70,7 +70,7 @@ std::array<double, 2> moments_about_foot(const base::Vec6<double>& local, double
   return {height_mm * local[0] + local[4], height_mm * local[1] - local[3]};
 }
 
-/// So small that sums fit, of forces as masses do and of moments in 31 bits, and no smaller.
+/// The smallest unit with which sums fit: of forces as of masses, and of moments in 31 bits.
 double unit_of_loads(const model::Robot& robot, const SupportPlane& plane) {
   const base::NodePlaces node_mm(robot.lattice(), robot.material().pitch_mm);
   const double part_mm = robot.material().pitch_mm / agent::kPlaneParts;

@@ -31,7 +31,7 @@ struct PerfettoTrace::Writer {
   bool is_closed = false;
   std::string line = {};
 
-  /// Room for one more event? Names do not count.
+  /// Whether there is room for one more event; names do not count.
   bool takes_event() {
     if (is_closed || event_count >= options.event_count_max) {
       is_truncated = true;

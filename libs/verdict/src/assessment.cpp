@@ -20,28 +20,30 @@ using mechanics::ContactLaw;
 using solver::Equilibrium;
 using solver::Outcome;
 
-/// Weak springs beside the unilateral contact of a stable robot: they change no load ratio by more
-/// than about 1e-8, and keep the matrix regular on the way to the answer.
+/// The weak springs beside the unilateral contact of a stable robot: they change no load ratio by
+/// more than about 1e-8, and keep the matrix regular until the answer is found.
 constexpr double kStableGammas[] = {1e-9};
 
-/// Multigrid tries only this one: weaker springs escape its single precision, below its own error.
+/// The only weak springs that multigrid tries: weaker ones are lost in its single precision, below
+/// its own error.
 constexpr double kStableGammasMultigrid[] = {1e-6};
 
-/// A toppling robot hangs on its weak springs, and bends elastically while it does: if they are
+/// The weak springs of a toppling robot, which bends elastically while they hold it. If they are
 /// stiff, three corners may still touch and look like a hold. The weaker they are, the more the
-/// tilt outweighs the bending; the second value serves one robot in ten thousand. Much weaker ones
-/// drown the contact states in rounding.
+/// tilt outweighs the bending; the second value serves one robot in ten thousand. Much weaker
+/// springs lose the contact states in rounding.
 constexpr double kTopplingGammas[] = {1e-6, 1e-7};
 
 /// A toppling robot of more modules is recognised by the rigid body alone, which is certain: its
 /// equilibrium is that of the weak springs that would hold it, a large and almost singular problem.
 constexpr std::size_t kTopplingCountMax = 1000;
 
-/// A verdict that hangs on multigrid's error is sought once more with so much less of it.
+/// The factor of the tolerance with which a verdict that depends on multigrid's error is sought
+/// again.
 constexpr double kFinerTolerance = 1e-6;
 
-/// Then the direct solver is asked first where no more blocks than this fill in per module: a solid
-/// cube of 17, 4,913 modules, has 60.
+/// The direct solver comes first for such a verdict if no more blocks than this fill in per module:
+/// a solid cube of 17, 4,913 modules, has 60.
 constexpr std::size_t kPreciseFillMax = 100;
 
 /// The direct solver comes last for robots of more modules, after multigrid with some more digits
@@ -158,7 +160,7 @@ void solve(const Situation& here, const solver::EquilibriumOptions& options,
   }
 }
 
-/// Connections, verdict and reasons, once there are an equilibrium and its loads.
+/// Finds connections, verdict and reasons, once there are an equilibrium and its loads.
 void conclude(const Situation& here, int thread_count, Assessment& assessment) {
   if (assessment.equilibrium.outcome == Outcome::kSettled) {
     assess_connections(here.robot, thread_count, assessment);

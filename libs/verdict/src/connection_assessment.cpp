@@ -29,7 +29,8 @@ constexpr double kWeakSprings = 1e3;
 /// What multigrid may be off by, as it promises (docs/solver.md).
 constexpr double kMultigridError = 1e-4;
 
-/// Unlike with std::max, a NaN on either side wins: what is not known must not hide.
+/// The larger number; unlike with std::max, a NaN on either side wins, so that nothing unknown is
+/// hidden.
 double max_or_nan(double a, double b) { return std::isnan(a) || a > b ? a : b; }
 
 bool is_nan(const LoadRange& range) { return std::isnan(range.low) || std::isnan(range.high); }
@@ -169,10 +170,10 @@ WholeLoads add_ranks(const model::Robot& robot, std::size_t broken_count, Loads&
   return whole;
 }
 
-/// Two answers of multigrid differ by less than the error of the better one, once in a while, and
-/// the error's energy is estimated too low. So of any connection the margin takes the largest
-/// difference so many times, or what the energy so many times could do to a load ratio, whichever
-/// is less; and never less than what is promised (docs/solver.md).
+/// The factor of multigrid's margin. Two answers of multigrid differ now and then by less than the
+/// error of the better one, and the error's energy is estimated too low. A connection's margin is
+/// therefore the largest difference times this factor, or what this factor times the energy could
+/// do to a load ratio, whichever is less; and never less than what is promised (docs/solver.md).
 constexpr double kMultigridFactor = 10;
 
 /// Where a verdict that hung on the error is sought with more digits, rounding may leave fewer than
@@ -226,8 +227,8 @@ LoadRange between_answers(const Loads& loads) {
 /// into no hole, are allocated: a ball of 990,000 modules takes 380 MB instead of 500.
 constexpr std::size_t kManyModules = 200'000;
 
-/// Nothing is said of a load below its own uncertainty: then it may as well be compression. Between
-/// the answers of ambiguous feet, which lie far apart, each is as good as the other.
+/// Whether a load counts as tension. A load below its own uncertainty may as well be compression;
+/// between the answers of ambiguous feet, which lie far apart, each is as good as the other.
 bool is_pulled_apart(double ratio_max, const Assessment& assessment) {
   const LoadRange& range = assessment.load_ratio_range;
   const bool is_known = breaks(ratio_max) || assessment.equilibrium.open_but_held_count > 0 ||
@@ -310,7 +311,7 @@ LoadRange assess_loads(const Situation& here, const solver::EquilibriumOptions& 
   return between_answers(loads);
 }
 
-/// Sec. III-D for every connection.
+/// Finds the load ratio of every connection (Sec. III-D).
 void assess_connections(const model::Robot& robot, int thread_count, Assessment& assessment) {
   if (assessment.connections.empty() && !robot.connections().empty()) {
     if (robot.modules().size() >= kManyModules) {

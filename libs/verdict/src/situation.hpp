@@ -26,7 +26,7 @@ struct Situation {
   StabilityRule rule;
 };
 
-/// assess_rigid_body() of a robot whose situation is known.
+/// Does assess_rigid_body() for a robot whose situation is known.
 RigidBody rigid_body(const Situation& here);
 
 }  // namespace holdfast::verdict

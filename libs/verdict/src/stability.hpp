@@ -7,8 +7,8 @@
 
 #include "situation.hpp"
 
-/// Does a robot keep standing where it is? By the rigid body, and by the model (Secs. III-B,
-/// III-C). Where a robot is a part, the answers are those of the whole.
+/// Decides whether a robot keeps standing where it is, by the rigid body and by the model (Secs.
+/// III-B, III-C). Where a robot is a part, the answers are those of the whole.
 namespace holdfast::verdict {
 
 /// The rigid body with supports anywhere; on a flat floor, where `body` knows it all, in closed
@@ -16,7 +16,8 @@ namespace holdfast::verdict {
 limit::RigidStability rigid_stability(const Situation& here, const RigidBody& body,
                                       bool has_figures);
 
-/// Sec. III-C: stable if a facet presses all over, or three corners that press are not on one line.
+/// Decides by Sec. III-C: stable if a facet presses all over, or three pressing corners are not on
+/// one line.
 ModelStability model_stability(const Situation& here, const solver::Equilibrium& equilibrium);
 
 /// Whether the states of all facets, in their order, hold a robot that nothing else holds: the

@@ -59,8 +59,8 @@ TEST(Assessment, counts_the_modules_that_a_vertical_connection_can_hold) {
   EXPECT_EQ(breaks.contact_model, ContactModel::kNone);
 }
 
-/// Against the functions of mechanics, one connection at a time; to the last bit. A section with
-/// unequal moments tells the axes apart.
+/// Loads are compared with the functions of mechanics, one connection at a time, to the last bit. A
+/// section with unequal moments tells the axes apart.
 TEST(Assessment, says_of_every_connection_what_mechanics_says) {
   model::RobotSpec spec{.fixed = {{0, 0, 0}}, .support_z = -10};
   for (const Cell& cell : {Cell{0, 0, 0}, Cell{1, 0, 0}, Cell{1, 1, 0}, Cell{1, 1, 1},

@@ -103,7 +103,8 @@ DistributedRun describe_run(const model::Robot& robot, const CheckResult& exact,
                             const sim::SimulationOptions& options, const Agents& agents,
                             const sim::SimulationResult& result);
 
-/// Called now and then during a long simulation; false ends it.
+/// A function that is called now and then during a long simulation, and ends it if it returns
+/// false.
 using SimulationProgress = std::function<bool(const sim::SimulationResult&)>;
 
 /// Simulates the robot's own computation. `exact` gives what the robot does not work out (margin,
@@ -141,11 +142,11 @@ verdict::Verdict to_verdict(agent::Verdict verdict);
 /// verdict is neither `safe` nor `overload`.
 std::optional<double> load_ratio_max(const agent::Answer& answer);
 
-/// "bound", "estimate".
+/// Returns "bound" or "estimate".
 const char* name(ErrorKind kind);
 
-/// "none", "modules", "robot_undecided", "exact_undecided", "contact_law", "other_solutions",
-/// "unstable_by_model", "unexplained".
+/// Returns "none", "modules", "robot_undecided", "exact_undecided", "contact_law",
+/// "other_solutions", "unstable_by_model" or "unexplained".
 const char* name(Difference difference);
 
 /// "elimination", "polynomial", "cg", "block-jacobi", "jacobi", and back.

@@ -91,18 +91,20 @@ base::Result<model::Robot> make_robot(const RobotCells& cells, int thread_count 
 struct CheckOptions {
   /// The ground holds like a module below would: supports neither lift nor tilt.
   bool is_bonded = false;
-  /// 0: as many as the machine has cores. The result does not depend on it.
+  /// The number of threads, on which the result does not depend; 0: as many as the machine has
+  /// cores.
   int thread_count = 0;
-  /// More than this is not taken; the verdict is then `undecided`.
+  /// The most memory that a check takes; the verdict is `undecided` if it needs more.
   std::size_t memory_bytes_max = solver::EquilibriumOptions{}.memory_bytes_max;
   /// Proves the largest load ratio; a verdict that is not proved becomes `undecided`.
   bool is_proof_wanted = false;
   /// Seeks the limit load: the largest factor of all loads that any forces could balance.
   bool is_limit_wanted = false;
   double limit_seconds_max = limit::LimitOptions{}.seconds_max;
-  /// Called while the limit load is sought, with what it is known to lie between.
+  /// A function that is called while the limit load is sought, with the bounds that are known.
   std::function<void(double low, double high)> limit_progress = {};
-  /// Called while a large robot is solved, with the share of the first error that is left.
+  /// A function that is called while a large robot is solved, with the share of the first error
+  /// that is left.
   std::function<void(int iteration, double error)> progress = {};
 };
 
@@ -146,7 +148,7 @@ base::Result<Structure> make_structure(io::Document document, std::string_view n
 /// family, a size that is not allowed.
 base::Result<io::Document> generate(std::string_view family, std::size_t size);
 
-/// Name and meaning of the size of each family, in the order of their list.
+/// The name of each family and the meaning of its size, in the order of their list.
 std::vector<std::pair<std::string_view, std::string_view>> family_list();
 
 CheckResult check(const model::Robot& robot, const CheckOptions& options = {});

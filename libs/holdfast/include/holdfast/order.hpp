@@ -40,8 +40,8 @@ struct OrderRequest {
   /// kExactModuleCount modules, most of whose states are certified by a bound.
   bool is_exact = false;
   int thread_count = 0;  ///< 0: as many as the machine has cores; decides nothing.
-  /// Asked all the time, by several threads; once it says so the search ends, and what has been
-  /// found by then is the answer.
+  /// A function that several threads call all the time; once it returns true the search ends, and
+  /// its answer is what has been found by then.
   std::function<bool()> is_interrupted = {};
   std::function<void(std::size_t states, std::size_t grown, std::size_t shrunk)> progress = {};
 };

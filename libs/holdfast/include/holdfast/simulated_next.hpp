@@ -47,7 +47,7 @@ struct SimulatedNext {
 struct SimulatedNextOptions {
   sim::SimulationOptions simulation = {};
   bool tries_others = true;  ///< Whether cells that stay undecided are planned in turn.
-  /// Called with how many cells have been planned, of how many.
+  /// A function that is called with the number of cells that have been planned, and of all.
   std::function<void(std::size_t done, std::size_t count)> progress = {};
 };
 

@@ -45,8 +45,8 @@ verdict::Assessment first_look(const model::Robot& robot);
 /// What a robot becomes with one more module.
 struct Trial {
   base::Cell cell;
-  /// False if there is no such robot: the cell is taken, touches nothing, lies too low. The rest is
-  /// void then.
+  /// Whether there is such a robot: not if the cell is taken, touches nothing or lies too low. The
+  /// rest is void then.
   bool is_robot = false;
   verdict::Verdict verdict = verdict::Verdict::kUndecided;
   /// The largest load ratio; none where no load is known, as for a robot that topples.
@@ -83,7 +83,7 @@ std::vector<Trial> try_cells(const model::RobotSpec& spec, std::span<const base:
 /// How to look for places, where the defaults do not do.
 struct NextOptions {
   CheckOptions check = {};
-  /// Called now and then with how many places are judged, of how many.
+  /// A function that is called now and then with the number of places that are judged, and of all.
   std::function<void(std::size_t done, std::size_t count)> progress = {};
 };
 

@@ -44,7 +44,8 @@ class Halo {
 
 /// A linear system for flexible conjugate gradients: K x = b.
 struct KrylovTask {
-  /// Asked before each iteration, with its number from 0 on and r . M^-1 r; true ends the method.
+  /// A function that is called before each iteration, with its number from 0 on and r . M^-1 r;
+  /// true ends the method.
   using IsOver = std::function<bool(int, double)>;
 
   std::span<double> x;                    ///< What the task itself works on.
@@ -85,7 +86,7 @@ class Ranks {
   /// Makes the exchange for arrays that have `own_count` items of this rank's own.
   virtual std::unique_ptr<Halo> make_halo(std::size_t own_count, std::span<const Copy> copies) = 0;
 
-  /// Work begins, or ends.
+  /// Logs that work begins or ends.
   virtual void log(Work work, bool is_begin) = 0;
 
   /// Whether the task's own method serves, and not another that somebody has asked for.
@@ -141,13 +142,13 @@ class SingleRank final : public Ranks {
 
   void watch(const KrylovTask& task) override { task.iterate(task.is_over); }
 
-  /// Never asked, as the own method serves.
+  /// Solves nothing: it is never called, as the own method serves.
   bool solve(const KrylovTask&, std::span<const double>, std::span<double>) override {
     return false;
   }
 };
 
-/// It has no state, so one serves all problems and threads.
+/// The one rank of a process by itself. It has no state, so one serves all problems and threads.
 inline Ranks& single_rank() {
   static SingleRank single;
   return single;

@@ -4,7 +4,7 @@
 
 #include "holdfast/mechanics/beam.hpp"
 
-/// Does a connection hold? Eq. (17) of [Piranda 2021].
+/// Decides whether a connection holds, by Eq. (17) of [Piranda 2021].
 namespace holdfast::mechanics {
 
 /// What holds two modules together: the data of Eq. (17).

@@ -41,7 +41,7 @@ struct MaterialParameter {
   const char* label;  ///< For people.
   const char* unit;   ///< For people; empty for a ratio.
   double lowest = 1e-12;
-  /// Beyond these two, products of parameters leave the range of double or lose all their digits.
+  /// Products of parameters leave the range of double, or lose all their digits, beyond these two.
   double highest = 1e12;
 };
 

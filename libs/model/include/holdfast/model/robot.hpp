@@ -116,8 +116,8 @@ struct RobotSpec {
   Touch floor = {};
   std::vector<Obstacle> obstacles = {};
   std::optional<std::array<double, 3>> gravity_m_s2 = {};  ///< None: Material's, straight down.
-  /// Width of the facets that touch the environment; none: the face of a cube, half a pitch else. 0
-  /// is a point.
+  /// The width of the facets that touch the environment; if none is given, the face of a cube, else
+  /// half a pitch. 0 is a point.
   std::optional<double> foot_mm = {};
   std::vector<ModuleKind> kinds = {};    ///< Empty: default_kind() alone, which all modules are of.
   std::vector<OwnKind> own_kinds = {};   ///< All others are of kind 0.
@@ -145,13 +145,13 @@ class Robot {
   /// The part of a robot that this is; all of it, unless create_part() made it.
   const RobotPart& part() const { return part_; }
 
-  /// Who else has a part of the robot. All of them ask the same in the same order.
+  /// The ranks that have parts of the robot. All of them call the same functions in the same order.
   host::Ranks& ranks() const { return part_.ranks; }
 
   /// How many modules are no copies of other ranks'.
   std::size_t own_count() const { return part_.own_count; }
 
-  /// Existing modules first, then the planned ones, each in the order of the spec.
+  /// The existing modules, then the planned ones, each in the order of the spec.
   std::span<const Module> modules() const { return modules_; }
 
   /// The lattice in which the modules' cells and directions count.
@@ -185,10 +185,10 @@ class Robot {
   /// What acts on the modules from outside: their weight, what they carry, and payloads.
   const Loads& loads() const { return loads_; }
 
-  /// m/s^2, global frame.
+  /// The gravity in m/s^2, global frame.
   const std::array<double, 3>& gravity() const { return gravity_; }
 
-  /// kg.
+  /// The mass of a module in kg.
   double mass(std::size_t module) const { return masses_.empty() ? mass_ : masses_[module]; }
 
   /// Whether all modules weigh the same.
@@ -201,7 +201,7 @@ class Robot {
 
   std::span<const ModuleKind> kinds() const { return kinds_; }
 
-  /// When a connection breaks: the weaker of its two modules' connectors.
+  /// The law of a connection, which is the weaker of its two modules' connectors.
   const ConnectorLaw& connector(const Connection& connection) const {
     return connector(modules_[static_cast<std::size_t>(connection.a)].kind,
                      modules_[static_cast<std::size_t>(connection.b)].kind, connection.direction);
@@ -223,7 +223,7 @@ class Robot {
 
   bool has_floor() const { return has_floor_; }
 
-  /// Void without a floor.
+  /// The level of the support; void without a floor.
   std::int32_t support_z() const { return support_z_; }
 
   /// The floor's level, below which no module may be, as one rests on the floor; none where none

@@ -22,7 +22,7 @@ enum class Certainty : std::uint8_t {
   kNotFound,     ///< Not published as far as we know: whoever uses the robot says it.
 };
 
-/// "published", "project page", "second hand", "derived", "not found".
+/// Returns "published", "project page", "second hand", "derived" or "not found".
 const char* name(Certainty certainty);
 
 /// A number of a robot. A range is entered with the end that holds less.
@@ -47,7 +47,7 @@ struct CatalogueRobot {
 /// All robots, in the order in which lists show them.
 std::span<const CatalogueRobot> robot_catalogue();
 
-/// nullptr if there is no robot of that name.
+/// The robot of that name; nullptr if there is none.
 const CatalogueRobot* find_robot(std::string_view name);
 
 /// The parameters of a material that every robot of the catalogue has a figure for, found or not.

@@ -35,7 +35,7 @@ struct Fault {
   base::Direction face = base::Direction::kPlusX;  ///< Of what concerns a link.
 };
 
-/// Does it happen to a link, not to a module?
+/// Whether a fault happens to a link, not to a module.
 constexpr bool is_of_link(Fault::Kind kind) {
   return kind == Fault::Kind::kCut || kind == Fault::Kind::kMend || kind == Fault::Kind::kUnplug ||
          kind == Fault::Kind::kPlug;
@@ -64,7 +64,7 @@ struct Announcement {
   bool is_withdrawal = false;
 };
 
-/// "kill", "cut", "detach", "attach", "reset", "mend", "unplug", "plug".
+/// Returns "kill", "cut", "detach", "attach", "reset", "mend", "unplug" or "plug".
 std::string_view name(Fault::Kind kind);
 
 }  // namespace holdfast::sim

@@ -67,7 +67,7 @@ LinkModel catoms();
 /// of rounds of a synchronous network. Packets of 228 bytes, version 2's, hold any message.
 LinkModel unit();
 
-/// "v1", "v2", "catoms" or "unit".
+/// The model that is called "v1", "v2", "catoms" or "unit".
 std::optional<LinkModel> find_link_model(std::string_view name);
 
 /// Why a model cannot be simulated (name, value found, values allowed), if it cannot.

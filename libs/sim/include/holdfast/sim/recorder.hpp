@@ -12,7 +12,7 @@
 /// on to the trace. For whoever runs agents, in this simulation or in another one.
 namespace holdfast::sim {
 
-/// Does the packet carry messages?
+/// Whether the packet carries messages.
 bool is_data(std::span<const std::uint8_t> packet);
 
 /// What is known of an agent.

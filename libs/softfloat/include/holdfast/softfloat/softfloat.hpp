@@ -35,8 +35,8 @@ inline constexpr Double kSign = Double{1} << 63U;
 
 inline Double subtract(Double a, Double b) { return add(a, b ^ kSign); }
 
-/// Binary32 by way of binary64: with 53 >= 2 x 24 + 2 digits the second rounding does no harm
-/// [Figueroa 1995].
+/// Adds in binary32 by way of binary64: with 53 >= 2 x 24 + 2 digits the second rounding does no
+/// harm [Figueroa 1995].
 inline Float add_float(Float a, Float b) { return narrowed(add(widened(a), widened(b))); }
 
 inline Float multiply_float(Float a, Float b) { return narrowed(multiply(widened(a), widened(b))); }

@@ -13,7 +13,7 @@
 #include "holdfast/verdict/reason.hpp"
 #include "holdfast/verdict/rigid_body.hpp"
 
-/// Will it hold? The verdict on a robot with its planned step, and everything it rests on.
+/// Gives the verdict on a robot with its planned step, and everything that it rests on.
 namespace holdfast::verdict {
 
 enum class Verdict : std::uint8_t {
@@ -66,7 +66,7 @@ struct Lean {
   double margin_mm = 0;  ///< Its least distance to an edge's line then, inside, less its error.
 };
 
-/// Bending that takes more than this share of the margin is worth a warning.
+/// The share of the margin above which bending is worth a warning.
 inline constexpr double kLeanShare = 0.1;
 
 /// What all ranks' connections together are, of a robot of which this is a part.
@@ -104,8 +104,8 @@ struct Slip {
 struct ModelStability {
   bool is_stable = false;
   bool is_settled = false;  ///< False: no consistent contact state was found, is_stable is void.
-  /// Another solution of the paper's contact law, or the exact law's, has states in which the robot
-  /// falls.
+  /// Whether another solution of the paper's contact law, or the exact law's, has states in which
+  /// the robot falls.
   bool falls_otherwise = false;
   std::optional<Slip> slip_otherwise = {};  ///< By the exact law, asked beside the paper's.
 };
@@ -131,7 +131,7 @@ struct Assessment {
   /// robot that topples is known to topple by the rigid body. Not meaningful if unstable.
   std::vector<ConnectionResult> connections;
   std::optional<double> load_ratio_max;  ///< None without connections or if one is not a number.
-  /// Index of the connection with load_ratio_max; none if that is below kLoadRatioTie, which is
+  /// The index of the connection with load_ratio_max; none if that is below kLoadRatioTie, which is
   /// rounding or compression, or below the width of load_ratio_range, its own uncertainty: no
   /// connection is known to be pulled apart.
   std::optional<std::size_t> worst;
@@ -183,10 +183,10 @@ Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& o
 Assessment assess_equilibrium(const model::Robot& robot, solver::Equilibrium equilibrium,
                               int thread_count = 0);
 
-/// "safe", "overload", "unstable", "undecided".
+/// Returns "safe", "overload", "unstable" or "undecided".
 const char* name(Verdict verdict);
 
-/// "none", "bonded", "regularised", "unilateral".
+/// Returns "none", "bonded", "regularised" or "unilateral".
 const char* name(ContactModel model);
 
 }  // namespace holdfast::verdict

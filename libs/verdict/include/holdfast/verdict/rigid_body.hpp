@@ -24,7 +24,7 @@ struct PlanPoint {
 };
 
 struct RigidBody {
-  /// More than zero to spare, or held by a fixed module or a bonded facet.
+  /// Whether there is more than zero to spare, or a fixed module or a bonded facet holds the robot.
   bool is_stable = false;
   /// The smallest signed distance from the centre of mass to the line of an edge of the support
   /// polygon, positive inside: the lever with which the weight holds the robot down, or tips it.
@@ -38,7 +38,7 @@ struct RigidBody {
   std::vector<PlanPoint> polygon;
 };
 
-/// Below this share of a pitch a margin that was computed in double counts as zero.
+/// The share of a pitch below which a margin that was computed in double counts as zero.
 inline constexpr double kMarginTie = 1e-9;
 
 /// Whether all facets lie in one level plane and can lift, and only weight acts, straight down:
