@@ -33,7 +33,7 @@ class Checkpoint final : public solver::ContactJournal {
   /// Throws std::runtime_error if the file cannot be written.
   void keep(std::span<const std::uint8_t> states) override;
 
-  /// Once there is an answer: removes the file.
+  /// Removes the file, to be called when there is an answer.
   void remove() const;
 
  private:

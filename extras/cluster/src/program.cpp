@@ -410,7 +410,7 @@ void add_reading(CLI::App& command, io::ReadOptions& reading) {
                    "Ignore keys of holdfast JSON that are unknown, with a note");
 }
 
-/// Which of one rank and of many answers.
+/// Adds the options that decide whether one rank answers or many.
 void add_sizes(CLI::App& check, Options& options) {
   check
       .add_option("--alone-max", options.alone_max,

@@ -22,7 +22,7 @@ namespace {
 constexpr int kFirstCode = 150;
 constexpr int kCodeCount = 75;
 
-/// Set for the ranks that launch() starts.
+/// The environment variable that launch() sets for the ranks that it starts.
 constexpr const char* kLaunched = "HOLDFAST_MPI_LAUNCHED";
 
 constexpr std::string_view kOurs = "holdfast-mpi: ";

@@ -29,11 +29,11 @@ Criterion translation_limit(double limit_mm);
 
 /// Says which element a search tries first.
 enum class Preference : std::uint8_t {
-  /// While growing what joins two nodes that are there, then what is nearest to the ground along
-  /// the
-  /// elements; while shrinking what is farthest. Costs nothing.
+  /// A growing search prefers elements that join two nodes that are there, then those nearest to
+  /// the ground along the elements; a shrinking one prefers the farthest. Costs nothing.
   kNearest,
-  /// While growing what uses up least, every candidate tried. For where the first finds nothing.
+  /// A growing search tries every candidate and prefers the one that uses up least. It serves where
+  /// kNearest finds nothing.
   kLeastUsed,
 };
 
