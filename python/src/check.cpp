@@ -163,7 +163,8 @@ py::dict stability(const CheckedStructure& check) {
   return out;
 }
 
-/// Verdict, load ratio, margin, weight factor, modules, seconds; not a number where none is known.
+/// The columns are verdict, load ratio, margin, weight factor, modules and seconds; not a number
+/// where none is known.
 py::tuple row(const CheckedStructure& check) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const verdict::Assessment& found = check.result.assessment;

@@ -23,7 +23,7 @@ namespace holdfast::python {
 
 namespace py = pybind11;
 
-/// Raised in Python as holdfast.Error.
+/// An error that Python sees as holdfast.Error.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -70,7 +70,7 @@ std::uint64_t integer_of(const py::handle& given, const char* what, std::uint64_
                          std::uint64_t high);
 double number_of(const py::handle& given, const char* what, double low, double high);
 
-/// Any number of 64 bits.
+/// Reads any number of 64 bits.
 std::uint64_t seed_of(const py::handle& given);
 
 /// Cells from an (n, 3) array of integers, or what numpy makes one of. Raises holdfast.Error that

@@ -47,7 +47,7 @@ class GilReleased {
 /// through the work, which is given up.
 class Watch {
  public:
-  /// `progress` is None or what is called with the numbers of the work; with the GIL.
+  /// The function `progress`, or None, is called with the numbers of the work; with the GIL.
   explicit Watch(py::object progress) : progress_(std::move(progress)) {}
 
   template <class... Number>
@@ -59,7 +59,7 @@ class Watch {
     }
   }
 
-  /// Only whether to go on.
+  /// Asks only whether to go on.
   void ask() {
     const auto now = std::chrono::steady_clock::now();
     if (now - last_asked_ >= kPeriod) {
@@ -90,7 +90,7 @@ class Watch {
     });
   }
 
-  /// Python code gives the GIL away now and then, and may not get it back.
+  /// Calls Python code, which gives the GIL away now and then, and may not get it back.
   void call(const py::tuple& numbers) {
     PyObject* const result =
         sleep_when_python_ends([&] { return PyObject_CallObject(progress_.ptr(), numbers.ptr()); });

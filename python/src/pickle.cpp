@@ -88,7 +88,7 @@ class Reader {
     get_bytes(list.data(), list.size() * sizeof(typename List::value_type));
   }
 
-  /// No more than can follow.
+  /// Reads a size and refuses one that is larger than what can follow.
   std::size_t get_size(std::size_t size_each) {
     std::size_t size = 0;
     get_bytes(&size, sizeof size);

@@ -97,7 +97,7 @@ std::shared_ptr<JudgedSteps> steps(const SharedStructure& structure, const py::h
   return judged;
 }
 
-/// (steps, 3): release, shift, connect.
+/// The stages as an array (steps, 3): release, shift, connect.
 py::array stages(const JudgedSteps& judged) {
   std::vector<JudgementRow> rows;
   for (const plan::StepJudgement& step : judged.result.judgement.steps) {

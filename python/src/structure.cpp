@@ -11,7 +11,7 @@
 #include "common.hpp"
 #include "long_work.hpp"
 
-/// Robots: made of arrays, of files, of text; written; looked at.
+/// Makes robots of arrays, files and text, writes them, and gives what they consist of.
 namespace holdfast::python {
 namespace {
 
@@ -81,7 +81,8 @@ void set_modules(io::Document& document, const std::vector<base::Cell>& cells,
   }
 }
 
-/// `head` is holdfast JSON without modules, for all that is said beside them; or empty.
+/// Makes a structure; `head` is holdfast JSON without modules, for all that is said beside them, or
+/// empty.
 SharedStructure make(const py::handle& cells, const py::handle& planned, const py::handle& fixed,
                      const py::handle& head, const Own& own) {
   io::Document document;

@@ -67,7 +67,7 @@ Verdict verdict_of(const certificate::Verification& found) {
   return {"SAFE: no connection breaks, and the robot stands", kExitHolds};
 }
 
-/// Under which assumption all this holds; empty if there is none.
+/// The assumption under which all this holds; empty if there is none.
 const char* caveat(certificate::Law law, const certificate::Verification& found) {
   switch (law) {
     case certificate::Law::kRegularised:

@@ -10,7 +10,7 @@
 #include "commands.hpp"
 #include "holdfast/distributed.hpp"
 
-/// --plan, --withdraw and --attach, which `simulate` and `emulate` have in common.
+/// Reads the options --plan, --withdraw and --attach, which `simulate` and `emulate` share.
 namespace holdfast::cli {
 
 struct ChangeOptions {
@@ -21,7 +21,7 @@ struct ChangeOptions {
   bool is_empty() const { return plans.empty() && withdrawals.empty() && attachments.empty(); }
 };
 
-/// `time` says what times are given in.
+/// Adds the options; `time` says what times are given in.
 void add_change_options(CLI::App& command, ChangeOptions& options, const std::string& time);
 
 /// Reads the changes; none, and the fault is printed, if a text is no place and time. `ticks`

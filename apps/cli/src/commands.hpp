@@ -192,8 +192,8 @@ inline void add_connections(CLI::App& command, std::string& choice) {
       ->capture_default_str();
 }
 
-/// False, and the error is printed, if the file cannot be written. "-" is standard output. The
-/// content is a text, or a function that writes into a stream.
+/// Writes a text, or what a function writes into a stream, to a file; "-" is standard output.
+/// Returns false, and prints the error, if the file cannot be written.
 template <class Content>
 bool write_or_complain(const std::string& path, const Content& content) {
   const auto error = write_file(path, content);

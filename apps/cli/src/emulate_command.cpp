@@ -154,7 +154,7 @@ class EmulateRun {
     });
   }
 
-  /// False if a file cannot be written.
+  /// Shows what the run has found; returns false if a file cannot be written.
   bool show(const Structure& structure, const CheckResult& exact, const EmulatedRun& run) const {
     const bool is_silent = options_.is_quiet || !leaves_standard_output(options_.outputs());
     return show_run(options_, is_silent, structure, exact, run, run.run);

@@ -42,7 +42,7 @@ bool take_cell(std::string_view& text, base::Cell& cell) {
          take_mark(text, ',') && take_number(text, cell.z);
 }
 
-/// "@T", and nothing behind it.
+/// Reads "@T" and expects nothing behind it.
 bool take_time(std::string_view text, double& time) {
   return take_mark(text, '@') && take_number(text, time) && text.empty() && time >= 0 &&
          time < 1e12;

@@ -21,7 +21,7 @@ struct FaultPlace {
 std::optional<FaultPlace> read_fault_place(std::string_view text, bool has_face,
                                            const Structure& structure);
 
-/// Any cell, and when. With `allows_all` "all@T" is agent::kEveryCell.
+/// The cell and time of a change; "all@T" is agent::kEveryCell if `allows_all`.
 struct ChangePlace {
   base::Cell cell;
   double time = 0;

@@ -37,7 +37,7 @@ Identity identity(const struct stat& status) {
           .place = {}};
 }
 
-/// "-" is the descriptor.
+/// Identifies a file by its path, or by the descriptor if the path is "-".
 Identity identify(std::string_view path, int descriptor) {
   struct stat status {};
 
