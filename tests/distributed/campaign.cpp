@@ -106,7 +106,7 @@ model::Limit limit_of(const model::Robot& robot, const verdict::Assessment& asse
   return model::load_ratio(robot.connector(robot.connections()[connection]), force).limit;
 }
 
-/// Does the robot name another limit of the same connection?
+/// Whether the robot names another limit of the same connection.
 bool has_other_limit(const model::Robot& robot, const verdict::Assessment& assessment,
                      const agent::Answer& answer) {
   if (robot.has_default_connectors() || !assessment.worst) {

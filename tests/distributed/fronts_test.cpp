@@ -18,7 +18,7 @@ namespace {
 
 constexpr auto kFronts = agent::Method::kFronts;
 
-/// Neither polynomial nor conjugate gradients.
+/// The method is neither the polynomial nor conjugate gradients.
 void expect_exact_method(const test::Comparison& comparison) {
   const agent::Method method = comparison.result.effort.method;
   EXPECT_TRUE(method == kFronts || method == agent::Method::kElimination) << comparison.text();
@@ -180,7 +180,7 @@ TEST(Fronts, a_fixed_block_with_planned_modules_between_others_is_decided) {
   EXPECT_EQ(comparison.result.effort.method, kFronts);
 }
 
-/// Its fronts would be the largest there are, and the polynomial is at its best.
+/// The fronts of a large block would be the largest there are, and the polynomial is at its best.
 TEST(Fronts, a_large_block_is_left_to_the_polynomial) {
   model::RobotSpec block;
   for (std::int32_t i = 0; i < 9 * 9 * 5; ++i) {

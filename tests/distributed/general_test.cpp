@@ -94,8 +94,9 @@ TEST(DistributedGeneral, a_mass_over_the_edge_is_not_safe_whatever_else_acts) {
   }
 }
 
-/// Four discs between two obstacles and a planned one: by the solution on Newton's path the largest
-/// load ratio is 0.950, by another one, which iterations of one sweep do not reach, 1.048.
+/// The robot has four discs between two obstacles and a planned one. The solution on Newton's path
+/// has the largest load ratio 0.950; another one, which iterations of one sweep do not reach,
+/// 1.048.
 TEST(DistributedGeneral, a_robot_that_another_solution_breaks_is_not_safe) {
   model::RobotSpec spec{.existing = {{0, 0, 0}, {0, 0, -1}, {0, 0, -2}, {1, 0, -2}}};
   spec.planned = {{1, 0, 0}};
@@ -110,8 +111,8 @@ TEST(DistributedGeneral, a_robot_that_another_solution_breaks_is_not_safe) {
   EXPECT_EQ(comparison.robot, Verdict::kUndecided) << comparison.text();
 }
 
-/// Nine prisms at a bonded obstacle, of which the largest load ratio is 0.086 by one solution of
-/// the paper's law and 1.16 by another.
+/// The largest load ratio of nine prisms at a bonded obstacle is 0.086 in one solution of the
+/// paper's law and 1.16 in another.
 TEST(DistributedGeneral, a_robot_that_hardly_bears_anything_by_one_solution_is_not_safe_by_it) {
   const auto robot = test::robot_of(test::general_robot(base::kHexagonalPrism, 1147));
   const verdict::Assessment exact = verdict::assess(robot);
@@ -173,8 +174,8 @@ struct Counts {
   int undecided = 0;
 };
 
-/// Never anything else, but undecided, which is counted: where the exact solver is, and where a
-/// trial for another solution does not converge.
+/// The robot never says anything else than the exact solver, but `undecided`, which is counted:
+/// where the exact solver does, and where a trial for another solution does not converge.
 void expect_like_exact(const model::RobotSpec& spec, std::uint64_t seed, Counts& counts) {
   const auto robot = model::Robot::create(spec);
   if (!robot) {
@@ -548,7 +549,7 @@ struct LawCounts {
   int other_limits = 0;
 };
 
-/// Never anything else than the exact answer, which decides.
+/// The robot never says anything else than the exact answer, which decides.
 void expect_lawful(const model::Robot& robot, std::uint64_t seed, LawCounts& counts) {
   const test::Comparison comparison = test::compare(robot, {.seed = seed});
   if (comparison.exact == verdict::Verdict::kUndecided) {

@@ -64,8 +64,8 @@ TEST(ManyPlanned, random_robots_are_decided_without_memory_for_fronts) {
   }
 }
 
-/// Its state is one of the exact law's alone, in which a foot that is open must not hold sideways:
-/// held, the largest load ratio is 0.7369 instead of 0.7145.
+/// The robot has a state only under the exact law, in which an open foot must not hold sideways: if
+/// it did, the largest load ratio would be 0.7369 instead of 0.7145.
 TEST(ManyPlanned, a_fixed_robot_lets_go_of_open_feet_under_the_exact_law) {
   const auto comparison =
       test::compare(test::robot_of(test::many_planned_robot(1245)), {.method = Method::kFronts});

@@ -38,7 +38,8 @@ model::RobotSpec bare_robot(std::uint64_t seed, std::vector<base::Cell>& plans) 
 struct Stage {
   Time at = 0;
   bool is_noticed = true;  ///< By somebody, sooner or later: no link that is cut or mended.
-  /// Is the module's part the one that changes? But for a module alone, which judges at once.
+  /// Whether each module's part is the one that changes; not for a module alone, which judges at
+  /// once.
   std::vector<bool> is_concerned = {};
   std::vector<verdict::Verdict> verdicts = {};
 };
@@ -399,9 +400,9 @@ void MishapRun::judge_end(const sim::Simulation& simulation, const TrueRobot& tr
   }
 }
 
-/// Beside a robot that starts from nothing as this one is in the end; not where a part is left that
-/// a fresh start would tell nobody where it is. What fails, or comes back,
-/// without a word is found when a link has been silent for as long as that takes.
+/// Compares the time with that of a robot that starts from nothing as this one is in the end,
+/// unless a part is left that a fresh start would tell nobody where it is. A silent failure or
+/// return is found when a link has been silent for as long as that takes.
 void MishapRun::judge_speed(const model::Robot& robot, const TrueRobot& truth, Time last_verdict,
                             MishapTally& tally) const {
   constexpr double kFreshStarts = 3;

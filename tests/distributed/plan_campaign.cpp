@@ -81,7 +81,7 @@ class PlanRun {
   /// A time of the first round.
   sim::Time some_time() { return rng_.below(round_ + 1); }
 
-  /// Late enough for so many rounds to have ended.
+  /// A time at which so many rounds have ended.
   sim::Time after(sim::Time rounds) const {
     const sim::Time pause = options_.link.ticks_per_second > 0 ? 10'000'000 : 2'000;
     return rounds * (4 * round_ + pause);

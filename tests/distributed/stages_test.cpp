@@ -83,7 +83,7 @@ void add_moves(const RobotState& robot, model::Step& step, base::Rng& rng) {
   }
 }
 
-/// `kind` takes turns at what a step does.
+/// Makes a random step; `kind` takes turns at what it does.
 model::Step random_step(const RobotState& robot, std::uint64_t kind, base::Rng& rng) {
   model::Step step;
   const auto pairs = pairs_of(robot);
@@ -111,7 +111,7 @@ model::Step random_step(const RobotState& robot, std::uint64_t kind, base::Rng& 
   return step;
 }
 
-/// Weak enough that some stages break, with a released pair now and then.
+/// A robot that is weak enough for some stages to break, with a released pair now and then.
 RobotState state_of(model::RobotSpec spec, base::Rng& rng) {
   spec.planned.clear();
   const double weakness = 0.05 + 0.05 * static_cast<double>(rng.below(20));
@@ -227,7 +227,8 @@ verdict::LoadRange range_of_solutions(const StageOfStep& of) {
   return range;
 }
 
-/// Never `safe` but where the exact solver says so. Without `of` other solutions do not count.
+/// The robot never says `safe` but where the exact solver does. Other solutions count only with
+/// `of`.
 void compare_stage(const agent::Answer& answer, const base::Result<plan::StageJudgement>& exact,
                    Tally& tally, const StageOfStep* of = nullptr) {
   ++tally.stages;

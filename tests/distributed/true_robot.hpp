@@ -30,7 +30,7 @@ class TrueRobot {
     return modules_[at(module)].is_attached && !modules_[at(module)].is_silent;
   }
 
-  /// Is the connection at a face of a module opened?
+  /// Whether the connection at a face of a module is opened.
   bool is_open(std::int32_t module, base::Direction face) const {
     return ((modules_[at(module)].open >> static_cast<unsigned>(base::index(face))) & 1U) != 0;
   }
@@ -42,7 +42,7 @@ class TrueRobot {
   /// The exact verdict of each module's part; kUndecided if the module is not attached.
   std::vector<verdict::Verdict> verdicts() const;
 
-  /// Is no module silent, no link cut, nothing apart?
+  /// Whether no module is silent, no link cut, nothing apart.
   bool is_whole() const;
 
   /// Faults and announcements that make a fresh robot what this one is.
@@ -88,8 +88,8 @@ class SafeTimes : public sim::TraceSink {
 
   const std::vector<Stretch>& stretches() const { return stretches_; }
 
-  /// When anybody has last come to another verdict; but for those that hear no module that knows
-  /// its cell, and wait for one as long as docs/distributed.md says.
+  /// The time of the last change to another verdict. It does not count modules that hear no module
+  /// that knows its cell, and wait for one as long as docs/distributed.md says.
   sim::Time last_verdict() const { return last_verdict_; }
 
  private:

@@ -117,7 +117,7 @@ model::RobotSpec slender_frame(std::int32_t width, std::int32_t height) {
   return spec;
 }
 
-/// Fixed at one end; too many loops for elimination.
+/// A cantilever, fixed at one end, with too many loops for elimination.
 model::RobotSpec thick_cantilever(std::int32_t length) {
   model::RobotSpec spec;
   for (std::int32_t x = 0; x < length; ++x) {

@@ -249,9 +249,9 @@ TEST(FirmwareFaults, a_module_without_power_never_makes_a_wrong_safe) {
   break_robots(Fault::Kind::kKill, 1);
 }
 
-/// docs/distributed.md, Watching: on lines of version 2 after 15 s and three times what the waves
-/// take, a quarter of a second here. The arm's middle dies long after the verdict; what sticks out
-/// hears no order any more.
+/// The limit is that of docs/distributed.md, Watching: on lines of version 2, 15 s and three times
+/// what the waves take, a quarter of a second here. The arm's middle dies long after the verdict;
+/// modules behind it hear no order any more.
 TEST(FirmwareFaults, nobody_keeps_an_old_verdict) {
   const Structure structure = load("arm_breaks_a");
   const auto& modules = structure.robot.modules();

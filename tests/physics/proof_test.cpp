@@ -81,7 +81,7 @@ TEST(Proof, shows_a_load_ratio_inside_its_range) {
   }
 }
 
-/// Scaled so that the ratio is 1 + off, robots of all kinds and sizes are decided.
+/// Robots of all kinds and sizes, scaled so that the ratio is 1 + off, are decided.
 TEST(Proof, decides_robots_within_1e_9_of_the_limit) {
   int decided = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {

@@ -18,7 +18,8 @@
 namespace holdfast {
 namespace {
 
-/// So stiff that bending leaves the centre of mass where it is; loads are the same to the last bit.
+/// Makes a robot so stiff that bending leaves the centre of mass where it is; loads are the same to
+/// the last bit.
 model::RobotSpec stiff(model::RobotSpec spec) {
   spec.material.elastic_modulus_mpa *= 1 << 20;
   return spec;

@@ -24,7 +24,7 @@ enum class Hardness : std::uint8_t {
 
 inline constexpr std::uint64_t kHardnessCount = 9;
 
-/// "points", "one contact", "slots", ...
+/// Returns "points", "one contact", "slots" and so on.
 const char* name(Hardness hardness);
 
 /// The seeds take turns.

@@ -155,7 +155,7 @@ class Builder {
     }
   }
 
-  /// Two posts with rungs, here and there a spike, until there is no more room.
+  /// Adds two posts with rungs and here and there a spike, until there is no more room.
   void ladder() {
     const std::int32_t step = 1 + number(8);
     for (std::int32_t z = 1; cells_.size() < room_; ++z) {
