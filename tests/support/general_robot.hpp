@@ -22,7 +22,7 @@ inline constexpr std::array<base::Lattice, 4> kLattices = {base::kCubic, base::k
 /// can be turned.
 model::RobotSpec general_robot(const base::Lattice& lattice, std::uint64_t seed);
 
-/// Which of a robot's existing modules are fixed.
+/// The choice of a robot's existing modules that are fixed.
 enum class Fixed : std::uint8_t { kAll, kAllButOne, kSome, kFirst };
 inline constexpr std::array<Fixed, 4> kFixed = {Fixed::kAll, Fixed::kAllButOne, Fixed::kSome,
                                                 Fixed::kFirst};

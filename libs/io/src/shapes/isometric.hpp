@@ -15,7 +15,7 @@ inline constexpr double kCos30 = 0.8660254037844386;
 /// The radius of a ball of one pitch: sqrt(3/2) / 2.
 inline constexpr double kBallRadius = 0.6123724356957945;
 
-/// Towards the eye; not of length one.
+/// The direction towards the eye; its length is not one.
 inline constexpr Place kEye = {1, -1, 1};
 
 /// Where a point is seen; the origin is at (0, 0).

@@ -28,7 +28,7 @@ Float narrowed(Double a);
 Double from_unsigned(std::uint32_t a);
 Double from_signed(std::int32_t a);
 
-/// Towards zero; not for numbers beyond 32 bits.
+/// Rounds towards zero; not for numbers beyond 32 bits.
 std::int32_t to_signed(Double a);
 
 inline constexpr Double kSign = Double{1} << 63U;
