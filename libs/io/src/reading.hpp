@@ -32,8 +32,8 @@ inline constexpr IntegerRange kGridRange = {1, base::kCoordinateMax + 1};
 /// The value of an attribute; nullptr if there is none of this name.
 const std::string* find_attribute(const Attributes& attributes, std::string_view name);
 
-/// What a reader has found so far. The first failure is the one that counts: a reader may go on
-/// with any value and has to look at has_failed() only before it does much more.
+/// Collects what a reader has found so far. Only the first failure counts: a reader may go on with
+/// any value and has to look at has_failed() only before it does much more.
 class Reading {
  public:
   /// Gives the place of a warning; called only for the first of equal warnings.

@@ -31,11 +31,11 @@ std::string line_at(std::string_view text, std::size_t offset);
 /// An input that is blank, too large, not UTF-8 or holds a zero byte, whatever its format.
 std::optional<base::Error> find_input_fault(std::string_view text);
 
-/// Why a string cannot be kept, such as "is not UTF-8" or "holds the control character 0x07". Tabs
-/// and line feeds can; what passes here comes back unchanged from both formats.
+/// Says why a string cannot be kept, such as "is not UTF-8" or "holds the control character 0x07".
+/// Tabs and line feeds can; what passes here comes back unchanged from both formats.
 std::optional<std::string> find_string_fault(std::string_view text);
 
-/// Why an element or attribute of XML cannot have this name.
+/// Says why an element or attribute of XML cannot have this name.
 std::optional<std::string> find_name_fault(std::string_view name);
 
 /// Whether a line begins as those do that a version control system leaves behind.

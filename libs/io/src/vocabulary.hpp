@@ -11,7 +11,7 @@
 #include "holdfast/io/extension.hpp"
 #include "holdfast/model/material.hpp"
 
-/// What things are called in files, once for all readers and writers.
+/// Names things in files, once for all readers and writers.
 namespace holdfast::io {
 
 inline constexpr std::string_view kJsonFormatName = "holdfast-structure";
@@ -20,7 +20,7 @@ inline constexpr int kJsonVersionMax = 2;
 /// The root element of VisibleSim's newer files, around all others.
 inline constexpr const char* kRootElement = "vs";
 
-/// Why a structure of datoms cannot be read.
+/// The reason why a structure of datoms cannot be read.
 inline constexpr const char* kNoDatoms =
     "datoms sit in a skewed face-centred lattice and change their shape, which this program does "
     "not know";
@@ -40,7 +40,7 @@ inline constexpr const char* kObstacleElement = "obstacle";
 inline constexpr auto kObstacleAttributes =
     std::to_array<std::string_view>({"position", "color", "hold", "friction", "to"});
 
-/// How a module is turned in its cell, of VisibleSim's catoms and hexanodes.
+/// The attribute for how a module is turned in its cell, of VisibleSim's catoms and hexanodes.
 inline constexpr const char* kOrientation = "orientation";
 
 /// Attributes of ours for what a module has of its own, and the child of <holdfast> with what else

@@ -10,10 +10,10 @@
 
 #include "holdfast/io/document.hpp"
 
-/// What the tests of readers and writers share.
+/// Serves the tests of readers and writers.
 namespace holdfast::io::document_test {
 
-/// What was read; a failed expectation that says why, and nothing, if it was refused.
+/// The document that was read; if it was refused, a failed expectation that says why, and nothing.
 inline ReadDocument accepted(base::Result<ReadDocument> read) {
   EXPECT_TRUE(read) << read.error().where << ": " << read.error().message;
   return read ? std::move(read).value() : ReadDocument{};

@@ -91,7 +91,7 @@ std::string first_met(const base::Lattice& lattice, const std::vector<Cell>& cel
   return met;
 }
 
-/// What one module's group draws: polygons, and the largest circle.
+/// The drawing of one module's group: polygons, and the largest circle.
 struct Drawn {
   std::string cell;
   std::vector<Polygon> polygons;

@@ -302,7 +302,7 @@ TEST(Vtu, comes_whole_through_a_stream_without_positions) {
   EXPECT_EQ(pipe.text, text_of(robot, assessment));
 }
 
-/// What XML has a meaning for stands in it as an entity.
+/// Characters that have a meaning in XML stand there as entities.
 TEST(Vtu, a_series_names_its_files) {
   const std::vector<SeriesFile> files = {{.time = 0, .part = 0, .name = "a&b_0.vtu"},
                                          {.time = 1, .part = 1, .name = "\"<é>.vtu"}};

@@ -44,7 +44,7 @@ bool is_within(const base::Cell& cell, std::int32_t most) {
   return is_near(cell.x) && is_near(cell.y) && is_near(cell.z);
 }
 
-/// What is wrong with a record wherever it stands; null if nothing is.
+/// Says what is wrong with a record wherever it stands; null if nothing is.
 const char* find_own_fault(const ModuleRecord& record, const solver::Bricks& bricks,
                            const base::Cell& low) {
   if (!is_within(record.place(), base::kCoordinateMax)) {

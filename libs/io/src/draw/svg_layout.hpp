@@ -12,7 +12,7 @@
 #include "shapes/svg_text.hpp"
 #include "shapes/visible_surface.hpp"
 
-/// Where everything goes on the card: header, drawing, legend from top to bottom.
+/// Lays out the card: header, drawing, legend from top to bottom.
 namespace holdfast::io {
 
 /// Beyond this many modules lines are thinner, and modules have no tooltips.
@@ -111,7 +111,7 @@ struct Scene {
   /// Whether the robot is drawn over this pixel.
   bool covers(ScreenPoint point) const;
 
-  /// How much of a box the robot covers, 0 to 1, from samples.
+  /// The share of a box that the robot covers, 0 to 1, from samples.
   double covered_share(const Box& box) const;
 
   /// The opacity of planned modules, or of ghosts, through which the robot has to be seen.

@@ -219,7 +219,7 @@ std::string draw_planned(const Scene& scene) {
 
 namespace {
 
-/// What a module on the ground touches.
+/// Says what a module on the ground touches.
 std::string touch_text(const model::Robot& robot, std::size_t module) {
   std::size_t obstacle_count = 0;
   bool is_on_floor = false;

@@ -45,7 +45,7 @@ void for_each_element(JsonReading& reading, const Json& value, const JsonPlace& 
   }
 }
 
-/// What read(reading, element, its place) makes of every element of an array.
+/// The list of read(reading, element, its place) for every element of an array.
 template <class Read>
 auto list_of(JsonReading& reading, const Json& value, const JsonPlace& place, const Read& read) {
   std::vector<decltype(read(reading, value, place))> list;

@@ -73,7 +73,7 @@ base::Result<ReadDocument> JsonReader::read(const Json& root, const ReadOptions&
   return std::move(reading_).finish();
 }
 
-/// What must be there, and in a version that can be read.
+/// Reads the members that must be there, and refuses versions that cannot be read.
 bool JsonReader::read_heading(const Json::object_t& root, const JsonPlace& place,
                               const ReadOptions& options) {
   static const Json kNone;

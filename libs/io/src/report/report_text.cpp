@@ -27,7 +27,7 @@ void write_modules(Out out, const model::Robot& robot) {
                  robot.ground_count(), robot.fixed_count());
 }
 
-/// What the rigid body says with supports anywhere.
+/// Says how the rigid body stands with supports anywhere.
 std::string rigid_text(const limit::RigidStability& rigid) {
   std::string text = fmt::format(": as a rigid body it {}", limit::name(rigid.answer));
   if (rigid.motion) {

@@ -67,7 +67,7 @@ std::set<std::size_t> listed_steps(const plan::SequenceJudgement& judged) {
   return listed;
 }
 
-/// Where a stage is at its worst, if that is on the way.
+/// Says where a stage is at its worst, if that is on the way.
 std::string waypoint_text(const StageJudgement& stage) {
   return stage.waypoint_count == 0
              ? std::string()

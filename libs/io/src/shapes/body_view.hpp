@@ -22,7 +22,7 @@ struct SeenFace {
   std::optional<base::Direction> direction;
 };
 
-/// What the eye sees of a body that has no neighbours; nothing of a ball, which is a circle of
+/// The faces that the eye sees of a body without neighbours; none of a ball, which is a circle of
 /// kBallRadius.
 std::vector<SeenFace> seen_faces(const base::Lattice& lattice);
 
@@ -55,7 +55,7 @@ class BodyView {
 
   base::Cell cell_of(const BodyItem& item) const;
 
-  /// Where the node of an item is, in pitches.
+  /// The place of an item's node, in pitches.
   Place place_of(const BodyItem& item) const;
 
   Body body() const { return body_; }

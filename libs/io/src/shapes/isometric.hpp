@@ -18,7 +18,7 @@ inline constexpr double kBallRadius = 0.6123724356957945;
 /// The direction towards the eye; its length is not one.
 inline constexpr Place kEye = {1, -1, 1};
 
-/// Where a point is seen; the origin is at (0, 0).
+/// The point of the picture where a place is seen; the origin is at (0, 0).
 constexpr ScreenPoint seen_at(const Place& place) {
   return {(place[0] + place[1]) * kCos30, (place[0] - place[1]) / 2 - place[2]};
 }

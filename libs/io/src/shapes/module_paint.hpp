@@ -11,7 +11,7 @@
 #include "shapes/module_shape.hpp"
 #include "shapes/visible_surface.hpp"
 
-/// What colour a module has, and what it says: as in Fig. 6 of [Piranda 2021].
+/// Gives each module a colour, and what it says: as in Fig. 6 of [Piranda 2021].
 namespace holdfast::io {
 
 enum class Meaning : std::uint8_t {

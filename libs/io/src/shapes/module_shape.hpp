@@ -41,7 +41,7 @@ constexpr Place cross(const Place& a, const Place& b) {
 struct ShapeFace {
   Place normal{};              ///< Outwards, of length one.
   std::vector<Place> corners;  ///< Counter-clockwise, seen from outside.
-  /// Where the neighbour is that shares the face; none: there is no such direction.
+  /// The direction of the neighbour that shares the face; none: there is no such direction.
   std::optional<base::Direction> direction;
 };
 
@@ -57,7 +57,7 @@ enum class Body : std::uint8_t {
 
 inline constexpr double kDiscDepth = 0.5;
 
-/// What the modules of a lattice are; of one without an entry in the table, that they fill cells.
+/// The body of a lattice's modules; modules of a lattice without an entry in the table fill cells.
 Body body_of(const base::Lattice& lattice);
 
 }  // namespace holdfast::io

@@ -38,7 +38,7 @@ bool is_xml_character(std::uint32_t code) {
          code <= 0x10ffff;
 }
 
-/// How many bytes a UTF-8 sequence with this first byte has, 0 if none begins with it.
+/// The number of bytes of a UTF-8 sequence with this first byte, 0 if none begins with it.
 std::size_t sequence_length(unsigned char first) {
   if (first < 0x80) {
     return 1;

@@ -66,7 +66,7 @@ class PathElements {
   /// The elements have these attributes besides the data.
   explicit PathElements(std::string attributes) : attributes_(std::move(attributes)) {}
 
-  /// Where the next piece goes, which begins with move_to. For that piece only.
+  /// The path of the next piece, which begins with move_to. It is for that piece only.
   Path& next();
 
   /// The elements, none if there was no piece. Called once.

@@ -35,7 +35,7 @@ bool has_more_than_position(const pugi::xml_node& node) {
   return node.first_attribute().next_attribute();
 }
 
-/// What the attributes of ours say that a module has of its own, if there are any.
+/// Reads the attributes of ours for what a module has of its own, if there are any.
 void read_own(XmlReading& reading, const pugi::xml_node& node, OwnParameters own) {
   if (!has_more_than_position(node)) {
     return;
@@ -172,7 +172,7 @@ struct BoxRanges {
   std::size_t count() const { return axes[0].count() * axes[1].count() * axes[2].count(); }
 };
 
-/// What <blockBox> says, in mm or in cells.
+/// The text of <blockBox>, in mm or in cells.
 struct BoxText {
   Lengths origin;
   Lengths size;  ///< Infinite where the box reaches the end of the grid.

@@ -167,7 +167,7 @@ void for_each_shown(const model::Obstacle& obstacle, const Use& use) {
   }
 }
 
-/// What makes an <obstacle> begin a further obstacle.
+/// Adds what makes an <obstacle> begin a further obstacle.
 void add_touch(pugi::xml_node& node, const model::Obstacle& obstacle, const base::Cell& shift) {
   add(node, "hold", std::string(kHoldNames[static_cast<std::size_t>(obstacle.touch.hold)]));
   if (obstacle.touch.friction) {
@@ -225,7 +225,7 @@ void add_targets(pugi::xml_node world, const Document& document, const base::Cel
   }
 }
 
-/// What VisibleSim has no word for, and ignores here.
+/// Adds the element for what VisibleSim has no word for, and ignores here.
 void add_own_element(pugi::xml_node world, const Document& document, const base::Cell& shift,
                      bool is_grid_computed) {
   pugi::xml_node node = append(world, kOwnElement);

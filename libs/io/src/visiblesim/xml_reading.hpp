@@ -56,7 +56,8 @@ class XmlReading : public Reading {
   /// Reads the attribute "color", if there is one.
   std::optional<Color> color(const pugi::xml_node& node);
 
-  /// What our writer has added to every cell, lest any be negative, by the attribute of <holdfast>.
+  /// Takes back what our writer has added to every cell, lest any be negative, by the attribute of
+  /// <holdfast>.
   void take_back_shift(const pugi::xml_node& own);
 
   /// An element with everything in it. `depth` counts from 1.

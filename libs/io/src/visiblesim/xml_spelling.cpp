@@ -14,7 +14,7 @@
 namespace holdfast::io {
 namespace {
 
-/// What may stand in an element that is read.
+/// The content that may stand in an element that is read.
 struct Content {
   std::string_view element;
   Names attributes;

@@ -18,7 +18,7 @@
 /// compressed size of each. The page has no compression: there an array is its size and its bytes.
 namespace holdfast::io {
 
-/// What one array holds. Values are little-endian on every machine that we build for.
+/// The content of one array. Values are little-endian on every machine that we build for.
 struct VtuArray {
   const char* type = "Float64";
   const char* name = "";

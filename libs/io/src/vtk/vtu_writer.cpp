@@ -41,11 +41,11 @@ constexpr std::size_t kFacetCornerCount = 4;
 constexpr std::array<std::array<double, 2>, kFacetCornerCount> kFacetCorners = {
     {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
 
-/// What a cell of the file stands for.
+/// The thing that a cell of the file stands for.
 enum class CellKind : std::uint8_t { kModule, kConnection, kFacet, kObstacle };
 
-/// What is not finite is written as 0, and what is is rounded to 32 bits, more than nine digits:
-/// fewer bits take less room and time.
+/// The value that is written: 0 for what is not finite, else rounded to 32 bits, more than nine
+/// digits, as fewer bits take less room and time.
 double written(double value) {
   constexpr std::uint64_t kDropped = 21;
   // Adding zero takes the sign from minus zero.
@@ -101,7 +101,7 @@ Triple first_half(const base::Vec6<double>& vector) { return {vector[0], vector[
 
 Triple second_half(const base::Vec6<double>& vector) { return {vector[3], vector[4], vector[5]}; }
 
-/// How many corners of a facet press: 0 (open), 1, 2 (an edge) or 4 (closed).
+/// The number of pressing corners of a facet: 0 (open), 1, 2 (an edge) or 4 (closed).
 std::int8_t pressing_corners(const mechanics::ContactState& state) {
   if (!state.pressed) {
     return 0;

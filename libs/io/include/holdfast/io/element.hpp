@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-/// What a structure keeps of VisibleSim XML as it stands there.
+/// Stores the parts of VisibleSim XML that a structure keeps as they stand there.
 namespace holdfast::io {
 
 /// Names and values, in the order of the file.

@@ -9,7 +9,7 @@
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/base/result.hpp"
 
-/// What lattices are called in files and on the command line, once for all that read or show them.
+/// Names the lattices in files and on the command line, once for all that read or show them.
 namespace holdfast::io {
 
 struct NamedLattice {

@@ -9,7 +9,7 @@
 #include "holdfast/io/document.hpp"
 #include "holdfast/plan/move_plan.hpp"
 
-/// What came of a search for moves from one shape to another, for programs and for people.
+/// Reports the result of a search for moves from one shape to another, for programs and for people.
 namespace holdfast::io {
 
 struct MoveReport {

@@ -9,7 +9,7 @@
 #include "holdfast/plan/order.hpp"
 #include "holdfast/plan/order_help.hpp"
 
-/// What came of a search for an order, for programs and for people.
+/// Reports the result of a search for an order, for programs and for people.
 namespace holdfast::io {
 
 struct OrderReport {

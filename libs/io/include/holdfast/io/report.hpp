@@ -30,7 +30,7 @@ std::string reason_text(const model::Robot& robot, const verdict::Reason& reason
 /// Returns the same sentence, with the cells that verdict::cells_of() has found.
 std::string reason_text(const verdict::Reason& reason, std::span<const base::Cell> cells);
 
-/// What a report says of a robot of which the entry's is a part only.
+/// The facts of the whole robot that a report needs if its entry's robot is only a part.
 struct WholeRobot {
   std::size_t existing_count = 0;
   std::size_t planned_count = 0;
