@@ -81,8 +81,8 @@ Springs Balancer::facet_springs(const State& state) const {
   return springs;
 }
 
-/// What has to follow c t_z, with c = (1 - gamma) times the facet's half width: the nearest
-/// integer, and one unit more in the field that belongs to this facet.
+/// Sets the follower, an integer near c t_z with c = (1 - gamma) times the facet's half width, and
+/// one unit more in the field that belongs to this facet.
 void Balancer::follow(std::size_t facet, std::size_t field, const Six& gap,
                       Balance& balance) const {
   const double force = constants_.follow.middle() * static_cast<double>(gap[kZ]);

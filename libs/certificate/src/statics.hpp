@@ -31,7 +31,7 @@ struct Beam {
   int axis = 0;
 };
 
-/// What follows from the material; h by axis, for facets that of z.
+/// The constants that follow from the material; h by axis, for facets that of z.
 struct Constants {
   explicit Constants(const Material& material);
 
@@ -49,7 +49,7 @@ class Structure {
  public:
   explicit Structure(const Certificate& certificate);
 
-  /// Why this is no robot, or empty.
+  /// Says why this is no robot, or empty.
   const std::string& fault() const { return fault_; }
 
   const std::vector<Beam>& beams() const { return beams_; }
@@ -57,7 +57,7 @@ class Structure {
   /// Modules on the ground, ascending.
   const std::vector<std::size_t>& facets() const { return facets_; }
 
-  /// What link() gives for a module on the ground.
+  /// The values of link() for a module on the ground, a fixed one, and one that is not reached yet.
   static constexpr std::size_t kFacet = static_cast<std::size_t>(-1);
   static constexpr std::size_t kFixed = static_cast<std::size_t>(-2);
   static constexpr std::size_t kNone = static_cast<std::size_t>(-3);
@@ -68,7 +68,7 @@ class Structure {
   /// Every module after the one that its link leads to.
   const std::vector<std::size_t>& order() const { return order_; }
 
-  /// How many beams there are from a module to its support.
+  /// The number of beams from a module to its support.
   const std::vector<std::size_t>& depth() const { return depth_; }
 
  private:

@@ -14,7 +14,7 @@ namespace {
 constexpr std::string_view kTitle = "holdfast-certificate";
 constexpr std::string_view kLaws[] = {"bonded", "regularised", "unilateral"};
 
-/// What a module's line ends with: open, pressed, and the signs of its tilts.
+/// The end of a module's line: open, pressed, and the signs of its tilts.
 constexpr char kSigns[] = {'-', '0', '+'};
 
 struct Named {

@@ -12,7 +12,7 @@
 namespace holdfast {
 namespace {
 
-/// What is written, and how the names of such files end.
+/// A format that is written, and the endings of such files.
 struct Endings {
   FileFormat format;
   std::string_view name;

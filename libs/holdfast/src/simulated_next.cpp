@@ -102,7 +102,7 @@ std::vector<Trial> sorted_trials(const Places& places) {
   return trials;
 }
 
-/// What the verdict on a plan says of the face that it is planned at.
+/// The answer on the face that a plan is for, from the verdict on the plan.
 agent::FreeFace face_of(const agent::Answer& answer) {
   const bool has_ratio =
       answer.verdict == agent::Verdict::kSafe || answer.verdict == agent::Verdict::kOverload;
@@ -217,7 +217,7 @@ Places absent_places(const model::Robot& robot, const std::vector<std::int32_t>&
   return places;
 }
 
-/// What the robot says of itself, and what that took it.
+/// Notes the robot's verdict on itself, and the effort that it took.
 void note_verdict(SimulatedNext& simulated, const sim::Simulation& simulation,
                   const RobotEffort& verdict) {
   const sim::SimulationResult result = simulation.result();
@@ -228,7 +228,8 @@ void note_verdict(SimulatedNext& simulated, const sim::Simulation& simulation,
   simulated.faces = difference(effort_of(result), verdict);
 }
 
-/// What one simulation says of the cells beside it; the first one of the robot, too.
+/// Runs one simulation and returns its answers on the cells beside it; the first one judges the
+/// robot, too.
 Places run(const model::Robot& robot, const SimulatedNextOptions& options, bool is_first,
            SimulatedNext& simulated) {
   const sim::SimulationOptions& how = options.simulation;

@@ -71,7 +71,7 @@ std::optional<plan::StageId> find_first(const std::vector<SimulatedStep>& steps,
   return std::nullopt;
 }
 
-/// Why a stage has its answer; of one that the robot did not come to, why it did not.
+/// Says why a stage has its answer, or why the robot did not come to it.
 std::string reason_text(const SimulatedStep& step, const agent::Answer& answer) {
   return answer.verdict == agent::Verdict::kNone
              ? fmt::format("not judged: {}", agent::name(step.answer.reason))

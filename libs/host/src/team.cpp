@@ -86,7 +86,7 @@ class Team::Crew {
   /// Whether its threads are those of this process, and did not stay behind when it was forked.
   bool is_here() const { return process_ == process_number().load(); }
 
-  /// How many forks lie between the program's start and this process.
+  /// The number of forks between the program's start and this process.
   static std::atomic<int>& process_number() {
     static std::atomic<int> number{0};
     return number;
@@ -166,8 +166,8 @@ void Team::Crew::run(std::size_t chunk_count, Task task, const void* context) {
   }
 }
 
-/// What is thrown in a task, such as std::bad_alloc, waits for the end of the loop: the others are
-/// not left behind, and the thread that called is the one that hears of it.
+/// Does a part of the task. An exception, such as std::bad_alloc, waits for the end of the loop:
+/// the other threads are not left behind, and the thread that called receives it.
 void Team::Crew::do_task(std::size_t begin, std::size_t end) noexcept {
   if (has_failed_.load(std::memory_order_acquire)) {
     return;

@@ -272,7 +272,7 @@ std::optional<std::string> find_connection_fault(const Connections& connections,
 
 namespace {
 
-/// Where a module rests on a floor, that bars all: nobody may be below it, not even what hangs from
+/// Finds a module below one that rests on a floor: nobody may be below it, not even what hangs from
 /// a fixed module.
 std::optional<std::string> find_module_below_floor(const Robot& robot) {
   const auto level = robot.barring_level();
@@ -294,7 +294,7 @@ std::optional<std::string> find_module_below_floor(const Robot& robot) {
       text(below->cell), text(standing->cell), *level);
 }
 
-/// What would hold a robot that nothing holds.
+/// Says what would hold a robot that nothing holds.
 std::string missing_support(const Robot& robot, const RobotSpec& spec) {
   const auto existing = robot.modules().first(robot.modules().size() - robot.planned_count());
   const auto lowest =

@@ -8,8 +8,8 @@
 
 #include "holdfast/model/robot.hpp"
 
-/// What can be wrong with a robot. Each function returns the first fault that it finds: what was
-/// found, where, and what is allowed.
+/// Finds what can be wrong with a robot. Each function returns the first fault that it finds: what
+/// was found, where, and what is allowed.
 namespace holdfast::model {
 
 /// Finds a fault in the numbers and coordinates of a spec.

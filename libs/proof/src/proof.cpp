@@ -94,7 +94,7 @@ Certificate certificate_of(const model::Robot& robot, const Assessment& assessme
   return made;
 }
 
-/// Why there is nothing to prove, or empty.
+/// Says why there is nothing to prove, or empty.
 std::string find_obstacle(const model::Robot& robot, const Assessment& assessment) {
   if (!assessment.is_stable) {
     return "the robot topples, which the rigid body decides in integers";
@@ -290,7 +290,7 @@ Proof prove(const model::Robot& robot, const Assessment& assessment, const Proof
 
 namespace {
 
-/// What the range says, by the rule that a ratio within kLoadRatioTie below 1 counts as 1.
+/// The verdict of the range, by the rule that a ratio within kLoadRatioTie below 1 counts as 1.
 verdict::Verdict verdict_of(const certificate::Verification& found) {
   const double limit = 1 - verdict::kLoadRatioTie;
   if (found.ratio_low >= limit) {

@@ -314,7 +314,7 @@ void Engine::begin_anew(std::int32_t module) {
   start(module);
 }
 
-/// What happens to a module at all its faces is sensed on the other side.
+/// Tells the neighbours at all faces of a module what has happened to it.
 void Engine::tell_neighbours(std::int32_t module, agent::EventKind kind) {
   for (const base::Direction face : base::directions(robot_.lattice())) {
     const std::int32_t other = neighbour(module, face);

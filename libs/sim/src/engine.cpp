@@ -174,7 +174,7 @@ void Engine::hand_in(std::int32_t module, const agent::Event& event) {
   settle(module);
 }
 
-/// How the module was put on, if that was wrong.
+/// Finds the way in which a module was put on, if that was wrong.
 const Misplaced* Engine::find_misplaced(std::int32_t module) const {
   const auto found = std::ranges::find(options_.misplaced, module, &Misplaced::module);
   return found != options_.misplaced.end() ? &*found : nullptr;

@@ -64,8 +64,8 @@ base::Vec6<double> in_plane(const SupportPlane& plane, const base::Vec6<double>&
   return local;
 }
 
-/// What a load at a height above the plane, in mm, does to it about the foot of the node: moments
-/// that forces along x' and y' would have to be shifted by.
+/// The moments of a load at a height above the plane, in mm, about the foot of the node: forces
+/// along x' and y' would have to be shifted by them.
 std::array<double, 2> moments_about_foot(const base::Vec6<double>& local, double height_mm) {
   return {height_mm * local[0] + local[4], height_mm * local[1] - local[3]};
 }

@@ -33,7 +33,7 @@ std::optional<SupportPlane> find_support_plane(const model::Robot& robot);
 std::optional<SupportPlane> find_support_plane(const model::Robot& robot,
                                                const model::Robot* step_end);
 
-/// What agents are told of the world where a robot is more than cubes on a floor under their weight
+/// Tells agents of the world where a robot is more than cubes on a floor under their weight
 /// (agent/surroundings.hpp): of every cell with a module, existing or planned, its load, its mass
 /// and its facets.
 class EnvironmentMap {
@@ -91,7 +91,7 @@ bool needs_environment(const model::Robot& robot);
 /// Whether agents need a map of the robot, or of the robot after a step, which may be null.
 bool needs_environment(const model::Robot& robot, const model::Robot* step_end);
 
-/// What of a robot its modules' program does not know, if anything.
+/// Says what of a robot its modules' program does not know, if anything.
 std::optional<std::string> find_unknown_to_modules(const model::Robot& robot);
 
 /// The width of a facet on the ground as a fraction of the pitch.

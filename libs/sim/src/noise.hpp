@@ -8,7 +8,7 @@
 #include "holdfast/base/rng.hpp"
 #include "holdfast/sim/link_model.hpp"
 
-/// What happens to packets on the way, drawn from the sender's own generator.
+/// Draws what happens to packets on the way from the sender's own generator.
 namespace holdfast::sim {
 
 /// An event of some probability, decided in integers: the same on every platform.

@@ -15,7 +15,7 @@ namespace holdfast::sim {
 /// The format is that of Chrome's trace viewer: complete slices "X", arrows from "s" to "f",
 /// instants "i", names "M". Slices are written when they end, so that none is ever left open.
 struct PerfettoTrace::Writer {
-  /// What a module is doing.
+  /// The state of a module's thread in the trace.
   struct Thread {
     agent::Phase phase = agent::Phase::kDiscovery;
     Time since = 0;

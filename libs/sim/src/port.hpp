@@ -12,7 +12,7 @@
 #include "holdfast/sim/recorder.hpp"
 #include "holdfast/sim/wake_timer.hpp"
 
-/// What the simulation keeps for each module beside its agent.
+/// Stores what the simulation keeps for each module beside its agent.
 namespace holdfast::sim {
 
 /// The lines at six faces.

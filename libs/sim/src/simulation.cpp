@@ -71,7 +71,8 @@ std::optional<std::string> find_faces_fault(const model::Robot& robot, const Mis
                      misplaced.module, count);
 }
 
-/// What is in a cell where the robot has no module is known of a floor only.
+/// Finds a fault in an announcement: what is in a cell where the robot has no module is known only
+/// of a floor.
 std::optional<std::string> find_place_fault(const model::Robot& robot,
                                             const Announcement& announcement) {
   const auto is_there = [&](const model::Module& module) {

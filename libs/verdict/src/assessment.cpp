@@ -52,7 +52,7 @@ constexpr std::size_t kPreciseFillMax = 100;
 constexpr std::size_t kPreciseCountMax = 2'000;
 constexpr double kFineTolerance = 1e-4;
 
-/// What the rigid body says, Sec. III-B.
+/// The part of the assessment that the rigid body decides, Sec. III-B.
 Assessment look_at_rigid_body(const Situation& here, bool has_figures) {
   Assessment assessment;
   assessment.stability_rule = here.rule;
@@ -193,8 +193,9 @@ bool is_near_limit(const Assessment& assessment) {
            !do_agree(*assessment.several, breaks(assessment.load_ratio_range.low))));
 }
 
-/// Where the verdict hangs on the error: the direct solver with all digits, or where that does not
-/// fit multigrid with more of them; of large robots the other way round.
+/// The options for seeking a verdict again that depends on the error: the direct solver with all
+/// digits, or where that does not fit multigrid with more of them; for large robots the other way
+/// round.
 std::vector<solver::EquilibriumOptions> finer_options(const Situation& here,
                                                       const solver::EquilibriumOptions& options) {
   std::vector<solver::EquilibriumOptions> list;

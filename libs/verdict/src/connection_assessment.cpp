@@ -20,13 +20,13 @@ namespace {
 using mechanics::ContactLaw;
 using solver::Equilibrium;
 
-/// What weak springs that are not taken back from the unilateral contact of a stable robot may
-/// move, in the same terms: so many times their share of the contact's stiffness, besides what
-/// their energy may do. In a robot of 4,327 modules with long thin limbs springs of 1e-9 moved the
-/// largest load ratio by 1.4e-4, and of 1e-6 by 4 %, so this alone is no bound.
+/// The factor for weak springs that are not taken back from the unilateral contact of a stable
+/// robot: they may move load ratios by so many times their share of the contact's stiffness,
+/// besides what their energy may do. In a robot of 4,327 modules with long thin limbs springs of
+/// 1e-9 moved the largest load ratio by 1.4e-4, and of 1e-6 by 4 %, so this alone is no bound.
 constexpr double kWeakSprings = 1e3;
 
-/// What multigrid may be off by, as it promises (docs/solver.md).
+/// The error of multigrid, as it promises (docs/solver.md).
 constexpr double kMultigridError = 1e-4;
 
 /// The larger number; unlike with std::max, a NaN on either side wins, so that nothing unknown is
@@ -35,7 +35,7 @@ double max_or_nan(double a, double b) { return std::isnan(a) || a > b ? a : b; }
 
 bool is_nan(const LoadRange& range) { return std::isnan(range.low) || std::isnan(range.high); }
 
-/// What some connections say together.
+/// The sums of what some connections say.
 struct Loads {
   LoadRange range = {.low = -std::numeric_limits<double>::infinity(),
                      .high = -std::numeric_limits<double>::infinity()};
@@ -76,8 +76,8 @@ bool is_alternative_spent(const Equilibrium& equilibrium) {
          equilibrium.open_but_held_count == 0;
 }
 
-/// What all connections say together, and which break; the results of each as well, if the second
-/// answer is to stay. If that has gone before, nothing is known of how the two differ.
+/// Adds up what all connections say, and which break; keeps the results of each as well, if the
+/// second answer is to stay. If that has gone before, nothing is known of how the two differ.
 Loads add_up(const model::Robot& robot, host::Team& team, Assessment& assessment) {
   const ConnectionLaws laws(robot);
   const auto connections = robot.connections();
@@ -142,7 +142,7 @@ void add_results(const model::Robot& robot, host::Team& team, Assessment& assess
   });
 }
 
-/// What one rank's connections say, for all others.
+/// The loads of one rank's connections, for all others.
 struct RankLoads {
   Loads loads;
   std::array<base::Cell, 2> worst_ends = {};
@@ -185,7 +185,7 @@ constexpr double kFinerFactor = 10;
 /// then.
 constexpr double kDirectFactor = 10;
 
-/// How much stiffer a beam is one way than another, all told as forces by millimetres at its ends.
+/// The ratio of a beam's largest stiffness to its least, all as forces by millimetres at its ends.
 double stiffness_spread(const model::Robot& robot) {
   const mechanics::BeamSection<double> section = model::beam_section(robot.material());
   const auto k = mechanics::beam_stiffness(section);
@@ -195,7 +195,7 @@ double stiffness_spread(const model::Robot& robot) {
   return most / least;
 }
 
-/// How far the largest load ratio may be from the truth.
+/// The distance by which the largest load ratio may be off.
 double error_margin(const model::Robot& robot, const solver::EquilibriumOptions& options,
                     const Equilibrium& equilibrium, const Loads& loads) {
   const double scale = std::max(1.0, loads.ratio_max);
@@ -215,7 +215,7 @@ double error_margin(const model::Robot& robot, const solver::EquilibriumOptions&
   return margin + kDirectFactor * loads.change;
 }
 
-/// What lies between the largest load ratios of two answers.
+/// The range between the largest load ratios of two answers.
 LoadRange between_answers(const Loads& loads) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   return is_nan(loads.range) ? LoadRange{.low = kNan, .high = kNan}

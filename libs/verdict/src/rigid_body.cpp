@@ -242,7 +242,7 @@ void add_corners(const std::array<double, 3>& centre, double half_width,
   }
 }
 
-/// What floating_body() needs to know of a robot.
+/// The facts of a robot that floating_body() needs to know.
 struct FloatingBody {
   double kg = 0;
   /// A node of the robot, that of any module: sums over a thousand modules that are far from where

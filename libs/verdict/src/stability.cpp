@@ -180,8 +180,8 @@ bool holds_by_cube_corners(const model::Robot& robot,
   return all.stable;
 }
 
-/// How far what the facets carry may be off, N: rounding, as a share of the largest of all, and
-/// what the iteration's error in the energy norm can do to the springs of one.
+/// The errors of what the facets carry, N: rounding, as a share of the largest of all, and what the
+/// iteration's error in the energy norm can do to the springs of one.
 class FacetErrors {
  public:
   FacetErrors(const model::Robot& robot, const Equilibrium& equilibrium,

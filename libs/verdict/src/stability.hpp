@@ -24,8 +24,8 @@ ModelStability model_stability(const Situation& here, const solver::Equilibrium&
 /// same.
 bool do_states_hold(const Situation& here, std::span<const mechanics::ContactState> contact);
 
-/// Where bending takes the centre of mass of a robot that the support polygon holds; none for any
-/// other.
+/// The place to which bending takes the centre of mass of a robot that the support polygon holds;
+/// none for any other.
 std::optional<Lean> find_lean(const model::Robot& robot, const Assessment& assessment);
 
 /// The facet whose sideways force exceeds its friction most, as a share of what it presses with

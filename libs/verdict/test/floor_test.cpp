@@ -92,8 +92,8 @@ TEST(TiltOnAFloor, is_where_contact_forces_end) {
   EXPECT_GT(count, test::campaign(10));
 }
 
-/// Where feet differ in friction it lies between those of the least and the most, and is no more
-/// than what holds.
+/// The tilt of feet that differ in friction lies between those of the least and the most, and is no
+/// more than what holds.
 TEST(TiltOnAFloor, of_several_frictions_is_no_more_than_what_holds) {
   RobotSpec spec{.support_z = std::nullopt};
   for (int x = 0; x < 3; ++x) {

@@ -87,7 +87,7 @@ struct RobotCells {
 /// the order given. Errors: as of model::Robot::create. 0 threads: as many as there are cores.
 base::Result<model::Robot> make_robot(const RobotCells& cells, int thread_count = 0);
 
-/// How to check, where the defaults do not do.
+/// The options of a check.
 struct CheckOptions {
   /// The ground holds like a module below would: supports neither lift nor tilt.
   bool is_bonded = false;
@@ -176,7 +176,7 @@ struct Rows {
   }
 };
 
-/// What every connection carries, in the order of Robot::connections(), as the members of
+/// The loads of every connection, in the order of Robot::connections(), as the members of
 /// verdict::ConnectionResult: load ratio, axial force (N), bending moment (N mm), shear force (N),
 /// torsional moment (N mm). No rows where no equilibrium is known.
 Rows connection_rows(const CheckResult& result);
@@ -186,12 +186,12 @@ Rows connection_rows(const CheckResult& result);
 std::vector<model::Limit> connection_limits(const model::Robot& robot,
                                             const verdict::Assessment& assessment);
 
-/// How far every module moves, in the order of Robot::modules(): along x, y, z in mm, about x, y, z
-/// in rad. No rows where no equilibrium is known.
+/// The displacement of every module, in the order of Robot::modules(): along x, y, z in mm, about
+/// x, y, z in rad. No rows where no equilibrium is known.
 Rows displacement_rows(const CheckResult& result);
 
-/// What the ground does to every module, in the same order: force in N, moment about the module's
-/// centre in N mm. Made of what its facets carry. Empty where no equilibrium is known.
+/// The force of the ground on every module, in the same order: force in N, moment about the
+/// module's centre in N mm, both from what its facets carry. Empty where no equilibrium is known.
 std::vector<base::Vec6<double>> ground_forces(const model::Robot& robot, const CheckResult& result);
 
 /// The certificate of a check's proof, for holdfast-checker; see docs/formats.md. Errors: there is

@@ -50,7 +50,7 @@ struct OrderRequest {
 /// io::make_spec() and plan::find_robot_order().
 base::Result<io::OrderReport> seek_order(const io::Document& target, const OrderRequest& request);
 
-/// What a certificate has proved, and of which robot.
+/// The claims that a certificate has proved, and of which robot.
 struct ProvedOrder {
   std::string name;  ///< As the certificate says; may be empty.
   plan::OrderTask task;
@@ -63,7 +63,7 @@ base::Result<ProvedOrder> verify_order_certificate(
     std::string_view text, const std::optional<model::RobotSpec>& target = {},
     int thread_count = 0);
 
-/// What is proved, of which robot and under which rules, for people.
+/// Says for people what is proved, of which robot and under which rules.
 std::string proved_text(const ProvedOrder& proved);
 
 }  // namespace holdfast

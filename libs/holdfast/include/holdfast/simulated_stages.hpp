@@ -17,7 +17,7 @@
 /// (agent/stages.hpp). The exact answers of plan/sequence.hpp stand beside its own.
 namespace holdfast {
 
-/// What the robot says of one step.
+/// The robot's answers on one step.
 struct SimulatedStep {
   std::array<agent::Answer, plan::kStageCount> stages = {};  ///< By plan::Stage.
   agent::Answer answer = {};           ///< On the step as a whole: that of the stage that fails.

@@ -15,7 +15,7 @@
 /// (agent::Setup::keeps_answers); the same robot without that runs beside it.
 namespace holdfast {
 
-/// What one robot says of a change, and what that took it.
+/// One robot's answer on a change, and the effort that it took.
 struct StepAnswer {
   agent::Answer answer = {};
   bool all_agree = false;     ///< Every module says so.

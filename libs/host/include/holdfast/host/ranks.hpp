@@ -58,7 +58,7 @@ struct KrylovTask {
   IsOver is_over;
 };
 
-/// What time goes to, for those who keep a log.
+/// The kinds of work on which time is spent, for those who keep a log.
 enum class Work : std::uint8_t { kProduct, kCycle };
 
 class Ranks {

@@ -104,7 +104,7 @@ class Team {
 
   class Crew;
 
-  /// What becomes of a team's threads.
+  /// The deleter of a team, which decides what becomes of its threads.
   struct Dismiss {
     void operator()(Crew* crew) const;
   };

@@ -57,7 +57,7 @@ struct ConnectorLaw {
 /// The law of a connection of two modules: of every number the one that holds less.
 ConnectorLaw weaker(const ConnectorLaw& a, const ConnectorLaw& b);
 
-/// What a connection carries, given by the numbers of its limits: N axially, M bending, V across, T
+/// The load of a connection as the numbers of its limits: N axially, M bending, V across, T
 /// torsion; units N and N mm.
 struct ConnectionForce {
   double axial_n = 0;
@@ -90,8 +90,8 @@ ConnectionForce connection_force(const ConnectorLaw& law, const base::Vec6<doubl
           .torsion_nmm = middle_force[5]};
 }
 
-/// How far the facet's edge opens, for a force in the middle, local frame: N L / (E A) and the
-/// angles of bending times the lever; 0 where it is pressed.
+/// The width by which the facet's edge opens, for a force in the middle, local frame: N L / (E A)
+/// and the angles of bending times the lever; 0 where it is pressed.
 template <class Length>
 double gap_mm(const ConnectorLaw& law, const BeamStiffness<double>& beam,
               const base::Vec6<double>& middle_force, const Length& length) {

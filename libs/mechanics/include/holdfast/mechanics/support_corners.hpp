@@ -32,7 +32,7 @@ struct SupportCorners {
 /// The corners with which a resting module presses, from its contact state.
 SupportCorners support_corners(const base::Cell& cell, ContactState state);
 
-/// What a fixed module contributes: it holds alone.
+/// The support of a fixed module, which holds alone.
 constexpr SupportCorners fixed_support() { return {.stable = true}; }
 
 /// The union; `stable` wins, three corners off one line become `stable`, of several on one line

@@ -28,7 +28,7 @@ namespace holdfast::model {
 /// More modules than this are refused; indices and exact sums stay far from overflow.
 inline constexpr std::size_t kModuleCountMax = 20'000'000;
 
-/// How a module is held from outside the robot.
+/// The way in which a module is held from outside the robot.
 enum class Support : std::uint8_t {
   kNone,
   kGround,  ///< Touches the floor or an obstacle with at least one facet.
@@ -66,7 +66,7 @@ struct ModuleKind {
 /// The modules that Material describes, with the connectors of Eq. (17).
 ModuleKind default_kind(const Material& material, const base::Lattice& lattice);
 
-/// What single modules have that others do not.
+/// The mass of a single module that differs from that of its kind.
 struct OwnMass {
   base::Cell cell;  ///< Existing or planned.
   double mass_kg = 0;
@@ -100,7 +100,7 @@ struct CarriedMass {
   friend bool operator==(const CarriedMass&, const CarriedMass&) = default;
 };
 
-/// What a robot is made from, in any order.
+/// The specification that a robot is made from, in any order.
 struct RobotSpec {
   std::vector<base::Cell> existing = {};
   std::vector<base::Cell> planned = {};  ///< Attached in the planned step, all at once.
@@ -135,10 +135,11 @@ class Robot {
   /// as many as the machine has cores.
   static base::Result<Robot> create(const RobotSpec& spec, int thread_count = 0);
 
-  /// What one of several processes has of a robot: the first own_count of the existing modules are
-  /// its own, the others copies of their neighbours, and none is planned. Facets and connections()
-  /// are those of its own modules alone, of connections the first module, so that all processes
-  /// together have each once. That the whole robot is connected and held is not checked here.
+  /// Makes the part of a robot that one of several processes has: the first own_count of the
+  /// existing modules are its own, the others copies of their neighbours, and none is planned.
+  /// Facets are those of its own modules alone, and so are connections() by their first module, so
+  /// that all processes together have each once. That the whole robot is connected and held is not
+  /// checked here.
   static base::Result<Robot> create_part(const RobotSpec& spec, RobotPart part,
                                          int thread_count = 1);
 
@@ -148,7 +149,7 @@ class Robot {
   /// The ranks that have parts of the robot. All of them call the same functions in the same order.
   host::Ranks& ranks() const { return part_.ranks; }
 
-  /// How many modules are no copies of other ranks'.
+  /// The number of modules that are no copies of other ranks'.
   std::size_t own_count() const { return part_.own_count; }
 
   /// The existing modules, then the planned ones, each in the order of the spec.
@@ -169,12 +170,13 @@ class Robot {
   /// Every pair of modules that is connected once, planned modules included.
   Connections connections() const { return {connections_, connected_}; }
 
-  /// How many pairs of neighbours are not connected.
+  /// The number of pairs of neighbours that are not connected.
   std::size_t released_count() const { return released_count_; }
 
-  /// What touches the environment, by ascending module, then by ascending direction: the lower
-  /// sides of all modules on the support level, and all sides that an obstacle lies beside, of
-  /// modules that are not fixed. A side has one facet: an obstacle's, where there is a floor too.
+  /// The facets that touch the environment, by ascending module, then by ascending direction: the
+  /// lower sides of all modules on the support level, and all sides that an obstacle lies beside,
+  /// of modules that are not fixed. A side has one facet: an obstacle's, where there is a floor
+  /// too.
   std::span<const Facet> facets() const { return facets_; }
 
   const Material& material() const { return material_; }
@@ -182,7 +184,7 @@ class Robot {
   /// Half the width of every facet, mm; 0 is a point.
   double foot_half_width_mm() const { return foot_half_width_mm_; }
 
-  /// What acts on the modules from outside: their weight, what they carry, and payloads.
+  /// The loads that act on the modules from outside: their weight, what they carry, and payloads.
   const Loads& loads() const { return loads_; }
 
   /// The gravity in m/s^2, global frame.
@@ -295,7 +297,7 @@ class Robot {
   RobotPart part_;
 };
 
-/// How many modules the whole robot has, of all ranks.
+/// The number of modules of the whole robot, of all ranks.
 inline std::size_t whole_module_count(const Robot& robot) {
   return host::total(robot.ranks(), robot.own_count());
 }
@@ -321,14 +323,15 @@ class FloorRule {
 /// forces that a ratio is made of.
 double load_ratio_per_energy_norm(const Robot& robot);
 
-/// What of a robot goes beyond [Piranda 2021], that is cubes of one kind on a floor without slip
-/// under their own weight, for parts of the program that know nothing else; none if nothing does.
+/// Says what of a robot goes beyond [Piranda 2021], that is cubes of one kind on a floor without
+/// slip under their own weight, for parts of the program that know nothing else; none if nothing
+/// does.
 std::optional<std::string> find_beyond_paper(const Robot& robot);
 
 /// The two cells of a connection, given by its index; the first has the smaller coordinate.
 std::array<base::Cell, 2> ends(const Robot& robot, std::size_t connection);
 
-/// How messages and reports name a cell, "(2,1,2)", and a connection, "(2,1,2)-(3,1,2)".
+/// Names a cell, "(2,1,2)", or a connection, "(2,1,2)-(3,1,2)", in messages and reports.
 std::string text(const base::Cell& cell);
 std::string ends_text(const Robot& robot, std::size_t connection);
 

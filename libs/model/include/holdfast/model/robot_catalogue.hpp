@@ -11,7 +11,7 @@
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/model/material.hpp"
 
-/// What is known of robots that have been built, each figure with where it comes from.
+/// Lists what is known of robots that have been built, each figure with its source.
 namespace holdfast::model {
 
 enum class Certainty : std::uint8_t {

@@ -10,7 +10,7 @@
 #include "holdfast/base/cell.hpp"
 #include "holdfast/base/lattice.hpp"
 
-/// What goes wrong, or is changed by hand, while a robot computes; as data.
+/// Describes what goes wrong, or is changed by hand, while a robot computes; as data.
 namespace holdfast::sim {
 
 /// Something that happens to one module at a time. Faults of the same time happen in the order of

@@ -70,10 +70,10 @@ LinkModel unit();
 /// The model that is called "v1", "v2", "catoms" or "unit".
 std::optional<LinkModel> find_link_model(std::string_view name);
 
-/// Why a model cannot be simulated (name, value found, values allowed), if it cannot.
+/// Says why a model cannot be simulated (name, value found, values allowed), if it cannot.
 std::optional<std::string> find_link_fault(const LinkModel& model);
 
-/// How long a packet occupies its line.
+/// The time for which a packet occupies its line.
 Time line_time(const LinkModel& model, int packet_bytes);
 
 /// The waiting times of the agents: as the model says, but long enough for an acknowledgement to

@@ -22,8 +22,8 @@
 /// trace hash on every platform.
 namespace holdfast::sim {
 
-/// What a module sends is changed before it is on its line: `packet` holds `size` bytes and has
-/// room for those of the largest packet. Returns the new size.
+/// A function that changes what a module sends before it is on its line: `packet` holds `size`
+/// bytes and has room for those of the largest packet. Returns the new size.
 using Tamper = std::function<int(Time now, std::int32_t module, base::Direction face,
                                  std::span<std::uint8_t> packet, int size)>;
 
@@ -55,7 +55,7 @@ struct SimulationOptions {
   const model::Robot* step_end = nullptr;
   Time time_max = agent::kNever;  ///< Later events do not happen.
   std::uint64_t event_count_max = ~std::uint64_t{0};
-  /// How long after the last verdict the modules' watching over it is simulated as well.
+  /// The time after the last verdict for which the modules' watching over it is simulated as well.
   Time watch_for = 0;
   std::int32_t anchor = 0;  ///< The module that knows its cell.
   /// The module that is told of the robot's planned modules, and of the step, before it starts.
@@ -65,15 +65,15 @@ struct SimulationOptions {
   Tamper tamper = {};          ///< Called for every packet, if there is one: faulty modules.
 };
 
-/// Why a simulation cannot be made (what, value found, values allowed), if it cannot.
+/// Says why a simulation cannot be made (what, value found, values allowed), if it cannot.
 std::optional<std::string> find_options_fault(const model::Robot& robot,
                                               const SimulationOptions& options);
 
-/// Why modules that are lent no memory, as all that run elsewhere than in Simulation, do not know
-/// enough of a robot; none if it is cubes on a floor under their weight.
+/// Says why modules that are lent no memory, as all that run elsewhere than in Simulation, do not
+/// know enough of a robot; none if it is cubes on a floor under their weight.
 std::optional<std::string> find_floor_fault(const model::Robot& robot);
 
-/// What the agents of a robot have in common, prepared.
+/// Makes the setup that the agents of a robot have in common.
 agent::Setup make_setup(const model::Robot& robot, const SimulationOptions& options);
 
 /// Whether the module is there at the start: not if it is put on before it is taken off.

@@ -29,7 +29,7 @@ struct PhaseStatistics {
   std::uint64_t rounds = 0;  ///< By how much the rounds grew meanwhile.
 };
 
-/// What a simulation has come to. Bytes are those of packets, without the line's framing.
+/// The result of a simulation. Bytes are those of packets, without the line's framing.
 struct SimulationResult {
   Time time = 0;          ///< Of the last event that a module handled.
   Time verdict_time = 0;  ///< When the last module came to know its verdict.

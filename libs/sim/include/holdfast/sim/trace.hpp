@@ -85,7 +85,7 @@ class PerfettoTrace : public TraceSink {
   std::unique_ptr<Writer> writer_;
 };
 
-/// What a module says of its answer, in words: "knows the verdict: safe (...), load ratio ...".
+/// Describes a module's answer in words: "knows the verdict: safe (...), load ratio ...".
 std::string describe(const agent::Answer& answer, const base::Lattice& lattice = base::kCubic);
 
 struct StoryOptions {

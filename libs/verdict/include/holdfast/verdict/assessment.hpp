@@ -31,14 +31,14 @@ enum class ContactModel : std::uint8_t {
   kUnilateral,   ///< Eqs. (6)-(8), exact; used where (9)-(12) have no usable answer.
 };
 
-/// What decides whether a robot keeps standing where it is.
+/// The rule that decides whether a robot keeps standing where it is.
 enum class StabilityRule : std::uint8_t {
   kHeld,           ///< A fixed module or a bonded facet holds it.
   kPolygon,        ///< All facets lie in a level plane: the support polygon.
   kContactForces,  ///< Supports anywhere: contact forces of a rigid body, and the model.
 };
 
-/// What one connection carries, in its middle (Eqs. 16-17).
+/// The load of one connection, in its middle (Eqs. 16-17).
 struct ConnectionResult {
   /// The largest ratio of its limits, see model::ConnectorLaw; Eq. (17) is (2 bending / a + axial)
   /// / Fmax. Breaks at 1 or more.
@@ -49,8 +49,8 @@ struct ConnectionResult {
   double torsion_nmm = 0;  ///< Not part of Eq. (17).
 };
 
-/// How far connections open at the edge of the facet beyond what contacts of power and data bear:
-/// no verdict, but a warning.
+/// The gaps by which connections open at the edge of the facet beyond what contacts of power and
+/// data tolerate: no verdict, but a warning.
 struct OpenGaps {
   std::size_t count = 0;  ///< Connections beyond their limit.
   std::size_t worst = 0;  ///< The index of the one with the largest share of its limit.
@@ -69,23 +69,24 @@ struct Lean {
 /// The share of the margin above which bending is worth a warning.
 inline constexpr double kLeanShare = 0.1;
 
-/// What all ranks' connections together are, of a robot of which this is a part.
+/// The loads of all ranks' connections together, of a robot of which this is a part.
 struct WholeLoads {
   std::size_t connection_count = 0;
   std::size_t broken_count = 0;
   std::array<base::Cell, 2> worst = {};  ///< The ends of the one with the largest load ratio.
 };
 
-/// What the largest load ratio lies between: apart by the solver's error, with a margin, or by feet
-/// whose hold on the ground is ambiguous. A verdict needs both on the same side of 1.
+/// The range in which the largest load ratio lies: its ends are apart by the solver's error, with a
+/// margin, or by feet whose hold on the ground is ambiguous. A verdict needs both on the same side
+/// of 1.
 struct LoadRange {
   double low = 0;
   double high = 0;
 };
 
-/// What the paper's contact law, where it has more than one solution, or where open facets may
-/// pull, says about the largest load ratio, and what the exact law says beside it. A verdict needs
-/// all of them on one side of 1.
+/// The largest load ratios of several solutions: of the paper's contact law, where it has more than
+/// one or where open facets may pull, and of the exact law beside it. A verdict needs all of them
+/// on one side of 1.
 struct SeveralSolutions {
   std::size_t found_count = 0;          ///< At least so many; 1 where open facets may pull.
   LoadRange regularised;                ///< Over all solutions found.
@@ -171,8 +172,8 @@ inline std::optional<bool> known_stability(const Assessment& assessment) {
   return is_open ? std::nullopt : std::optional(assessment.is_stable);
 }
 
-/// What the rigid body says of a robot, and nothing else: no verdict, no reasons. On supports
-/// anywhere the tilt and the friction needed only if asked for.
+/// Assesses a robot by the rigid body alone: no verdict, no reasons. With supports anywhere, tilt
+/// and friction are found only if `has_figures` asks for them.
 Assessment assess_rigidly(const model::Robot& robot, bool has_figures = true);
 
 /// Seeks the equilibrium of a robot and says what follows from it.

@@ -49,9 +49,9 @@ bool is_on_flat_floor(const model::Robot& robot);
 /// centre of mass, no polygon and no margin, and `is_stable` if something holds it fast.
 RigidBody assess_rigid_body(const model::Robot& robot);
 
-/// What assess_rigid_body() says of a robot with one more module, again and again, without looking
-/// at the robot again: to the same digits if its mass is exact, else but for rounding. For robots
-/// without facets or on a flat floor.
+/// Finds what assess_rigid_body() says of a robot with one more module, again and again, without
+/// looking at the robot again: to the same digits if its mass is exact, else but for rounding. It
+/// serves robots without facets or on a flat floor.
 class GrowingRigidBody {
  public:
   /// The new module weighs `mass_kg`.
