@@ -117,7 +117,8 @@ PetscErrorCode end_all_on_petsc_error(MPI_Comm, int, const char* function, const
                       message == nullptr ? "" : message));
 }
 
-/// Where addresses are limited they are not to be had by the gigabyte.
+/// Uses large pages, but not where the address space is limited: they are not to be had by the
+/// gigabyte.
 void use_large_pages_if_unlimited() {
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY) {

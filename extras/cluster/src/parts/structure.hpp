@@ -19,7 +19,7 @@ namespace holdfast::cluster {
 /// A module, in files and between ranks.
 using Record = io::ModuleRecord;
 
-/// What a rank has of a structure.
+/// A rank's part of a structure.
 struct Structure {
   std::string name;
   model::RobotSpec common;  ///< Without modules: all ranks have the same.

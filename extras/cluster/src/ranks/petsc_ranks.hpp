@@ -13,7 +13,7 @@
 
 namespace holdfast::cluster {
 
-/// What a rank has told others so far.
+/// The amount that a rank has exchanged with others so far.
 struct Traffic {
   std::size_t halo_count = 0;  ///< Updates of copies.
   std::size_t halo_bytes = 0;  ///< Received in them.

@@ -11,7 +11,7 @@
 
 namespace holdfast::frames {
 
-/// How much work a GrowingNetwork has done.
+/// The amount of work that a GrowingNetwork has done.
 struct GrowingWork {
   std::int64_t solution_count = 0;       ///< Solutions, refinements included.
   std::int64_t refinement_count = 0;     ///< Of these, those that mended a residual.

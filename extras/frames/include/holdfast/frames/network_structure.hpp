@@ -20,8 +20,8 @@ using plan::OrderOptions;
 using plan::OrderOutcome;
 using plan::Sense;
 
-/// How far a network in equilibrium uses up what it may, from the displacements of its nodes: safe
-/// up to 1.
+/// A measure of how much a network in equilibrium uses of what is allowed, from the displacements
+/// of its nodes: safe up to 1.
 using Criterion = std::function<double(std::span<const base::Vec6<double>> displacements)>;
 
 /// The largest translation of a node, of `limit_mm`.
