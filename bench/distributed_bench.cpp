@@ -179,7 +179,7 @@ int run_random(const Robots& robots, bool is_noisy) {
   return tally.wrong + tally.undecided;
 }
 
-/// What random robots of general_robot() are made into.
+/// A way to change the random robots of general_robot().
 struct Variety {
   bool is_planned = false;
   bool is_turned = false;

@@ -101,7 +101,7 @@ py::array ground_forces(const SharedCheck& check) {
   return array;
 }
 
-/// How each facet touches.
+/// The contacts of all facets.
 py::array contacts(const SharedCheck& check) {
   const auto& list = check->result.assessment.equilibrium.contact;
   using State = std::decay_t<decltype(list.front())>;

@@ -101,7 +101,7 @@ py::array view(const T* values, std::size_t count, const py::dtype& type, const 
   return array;
 }
 
-/// What the other files add to the module.
+/// The functions of the other files that add to the module.
 void add_structure(py::module_& module);
 void add_check(py::module_& module);
 void add_pickle(py::module_& module);

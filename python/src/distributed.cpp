@@ -14,9 +14,8 @@
 namespace holdfast::python {
 namespace {
 
-/// What happens to a module, or is planned, at a time in seconds, or in rounds: ("kill", 0.1,
-/// cell),
-/// ("cut", 0.1, cell, "+x"), ("plan", 0.2, cell).
+/// An event that happens to a module, or a plan, at a time in seconds, or in rounds: ("kill", 0.1,
+/// cell), ("cut", 0.1, cell, "+x"), ("plan", 0.2, cell).
 struct Event {
   std::string kind;
   double at = 0;
@@ -112,7 +111,7 @@ auto going_on(Watch& watch) {
   };
 }
 
-/// What disturbs the lines: probabilities, and seconds for jitter.
+/// Adds what disturbs the lines: probabilities, and seconds for jitter.
 void add_noise(sim::LinkModel& link, const py::dict& noise, double ticks) {
   for (const auto& [key, value] : noise) {
     const std::string name = utf8_of(key, "noise");

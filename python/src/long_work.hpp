@@ -42,9 +42,9 @@ class GilReleased {
   PyThreadState* thread_;
 };
 
-/// What long work asks now and then, without the GIL, from the thread that was called: has the user
-/// pressed Ctrl-C? It also tells Python how far the work is. What Python raises is thrown here,
-/// through the work, which is given up.
+/// Lets long work find out now and then, without the GIL, from the thread that was called, whether
+/// the user has pressed Ctrl-C. It also tells Python how far the work is. What Python raises is
+/// thrown here, through the work, which is given up.
 class Watch {
  public:
   /// The function `progress`, or None, is called with the numbers of the work; with the GIL.

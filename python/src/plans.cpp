@@ -13,7 +13,7 @@
 #include "holdfast/trial.hpp"
 #include "long_work.hpp"
 
-/// What may come next: places, steps, orders, moves.
+/// Adds what may come next: places, steps, orders, moves.
 namespace holdfast::python {
 namespace {
 

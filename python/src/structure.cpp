@@ -214,7 +214,7 @@ py::array facets(const SharedStructure& structure) {
               py::cast(structure));
 }
 
-/// Where the nodes of modules are, mm.
+/// The places of the modules' nodes, mm.
 py::array_t<double> positions(const Structure& structure) {
   const model::Robot& robot = structure.robot;
   const base::NodePlaces place(robot.lattice(), robot.material().pitch_mm);

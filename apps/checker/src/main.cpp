@@ -44,7 +44,7 @@ constexpr int kExitFails = 1;
 constexpr int kExitOpen = 2;
 constexpr int kExitNotProved = 3;
 
-/// What is proved of the robot, in words and as the exit code.
+/// The verdict that is proved of the robot, in words and as the exit code.
 struct Verdict {
   const char* text;
   int code;

@@ -42,7 +42,7 @@ Command add_view(CLI::App& app);
 /// The verdict in capitals, coloured on a terminal, padded to the longest.
 std::string banner(verdict::Verdict verdict);
 
-/// What the program ends with when it was asked where the next module may go.
+/// The exit code of a program that was asked where the next module may go.
 int exit_code_of(const NextResult& result);
 
 /// A file, or files, that must be given. The help shows no type beside the name.
@@ -95,8 +95,7 @@ inline int fail(const base::Error& error, const std::string& file) {
   return kExitBadInput;
 }
 
-/// What a reader noticed. Goes to standard error whatever is asked for: a silent note is a lost
-/// one.
+/// Prints a reader's notes to standard error, whatever is asked for: a silent note is a lost one.
 inline void print_notes(std::span<const std::string> notes, const std::string& file) {
   for (const std::string& note : notes) {
     fmt::print(stderr, "holdfast: {}: note: {}\n", io::one_line(file), note);
@@ -114,7 +113,7 @@ inline void print_not_written(const std::string& file, const char* reason) {
   }
 }
 
-/// What is wrong with the name of a robot of the catalogue; empty if nothing is.
+/// Says what is wrong with the name of a robot of the catalogue; empty if nothing is.
 inline std::string robot_name_fault(const std::string& name) {
   return model::find_robot(name) != nullptr
              ? std::string()

@@ -44,8 +44,8 @@ struct EmulateArguments {
   }
 };
 
-/// What ./dev firmware has built, or what was installed; if neither is there, where the first would
-/// be.
+/// The image that ./dev firmware has built, or that was installed; if there is neither, where the
+/// first would be.
 std::string default_image(const std::string& board) {
   const char* const name =
       board == "v1" ? "firmware/v1/module_stm32f0.elf" : "firmware/module_stm32f0.elf";

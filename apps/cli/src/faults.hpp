@@ -29,7 +29,7 @@ struct ChangePlace {
 
 std::optional<ChangePlace> read_change_place(std::string_view text, bool allows_all);
 
-/// What is wrong with a text that is none.
+/// Says what is wrong with a text that is no such place.
 std::string change_usage(std::string_view option, std::string_view text, bool allows_all);
 std::string fault_usage(std::string_view option, std::string_view text, bool has_face);
 

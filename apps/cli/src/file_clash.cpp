@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What tells a file from all others: its number if it exists, or else its place.
+/// The identity of a file: its number if it exists, or else its place.
 struct Identity {
   bool exists = false;
   bool is_regular = false;

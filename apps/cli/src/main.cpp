@@ -19,7 +19,7 @@ namespace {
 
 namespace cli = holdfast::cli;
 
-/// What to say where the first argument is neither an option nor a command; else empty.
+/// Says that the first argument is neither an option nor a command; else empty.
 std::string unknown_command(const CLI::App& app, int argc, char** argv) {
   const std::string argument = argc > 1 ? argv[1] : "";
   if (argument.empty() || argument.starts_with('-')) {
@@ -129,7 +129,7 @@ int fail_exception() {
   return holdfast::kExitFailure;
 }
 
-/// Where an exception has nobody left to catch it: what it is decides, as in main.
+/// Ends the program as main does after an exception that nobody is left to catch.
 [[noreturn]] void terminate_by_exit() {
   if (std::current_exception()) {
     ::_exit(fail_exception());

@@ -255,7 +255,7 @@ Reply limit_request(const Request& request) {
   return {.text = io::collapse_json(robot.value(), *result.limit), .integers = {}, .numbers = {}};
 }
 
-/// What was prepared for the same robot and role, or else anew.
+/// The trials that were prepared for the same robot and role, or else new ones.
 base::Result<CellTrials*> trials_for(const Request& request) {
   const auto size = static_cast<std::size_t>(request.tail.data() - input.data());
   const std::span asked = std::span(input).first(size);
@@ -420,7 +420,7 @@ Reply judge_steps_request(const Request& request) {
           .numbers = {}};
 }
 
-/// Where there is no order, help is sought for so long.
+/// The seconds for which help is sought where there is no order.
 constexpr double kHelpSeconds = 3;
 
 /// An order for the modules of the document, sought for options[0] seconds. Text: the outcome, the
@@ -534,7 +534,7 @@ void write_order(io::JsonStream& json, const char* text, bool is_iteration) {
   json.end_object();
 }
 
-/// What a report says of a simulation, and what the page needs besides to play it.
+/// Writes what a report says of a simulation, and what the page needs besides to play it.
 std::string simulation_summary(const DistributedRun& run, bool is_complete) {
   std::string text;
   io::JsonStream json(text, io::JsonStream::Layout::kCompact);
@@ -577,7 +577,7 @@ Reply simulate_request(const Request& request) {
 
 namespace web = holdfast::web;
 
-/// Where the next request goes, `size` bytes.
+/// The place for the next request of `size` bytes.
 HOLDFAST_EXPORT(holdfast_input)(std::size_t size)->std::uint8_t* {
   web::reply = {};
   web::input.resize(size);

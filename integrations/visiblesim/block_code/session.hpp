@@ -10,7 +10,8 @@
 #include "ensemble.hpp"
 #include "settings.hpp"
 
-/// What there is once in a run of VisibleSim: the options, the robot as a whole, what is printed.
+/// Holds what there is once in a run of VisibleSim: the options, the robot as a whole, what is
+/// printed.
 namespace holdfast::visiblesim {
 
 class Session {

@@ -18,7 +18,7 @@ namespace holdfast::visiblesim {
 
 using agent::Time;
 
-/// What goes over a line.
+/// A packet that goes over a line.
 struct Packet {
   std::span<const std::uint8_t> bytes = {};
   std::uint64_t rounds = 0;  ///< Of the chain of packets that ends with this one.
@@ -100,7 +100,8 @@ class Block {
             .bytes_sent = bytes_sent_};
   }
 
-  /// What a tap shows: the robot's verdict and the load ratios of this module's connections.
+  /// The text that a tap shows: the robot's verdict and the load ratios of this module's
+  /// connections.
   std::string describe() const;
 
  private:

@@ -11,7 +11,7 @@
 #include "holdfast/distributed.hpp"
 #include "holdfast/sim/recorder.hpp"
 
-/// What the blocks of a robot share, and what they have come to as a whole.
+/// Holds what the blocks of a robot share, and their result as a whole.
 namespace holdfast::visiblesim {
 
 class Block;

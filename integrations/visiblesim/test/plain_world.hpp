@@ -12,8 +12,8 @@
 #include "holdfast/sim/event_queue.hpp"
 #include "holdfast/sim/link_model.hpp"
 
-/// What VisibleSim does for blocks, in its plainest form: our own simulator's queue and lines
-/// behind the same interface.
+/// Does for blocks what VisibleSim does, in its plainest form: with our own simulator's queue and
+/// lines behind the same interface.
 namespace holdfast::visiblesim {
 
 class PlainWorld {
