@@ -107,7 +107,7 @@ std::vector<Faces> turns(const base::Lattice& lattice) {
 
 enum class Mistake : std::uint8_t { kTurn, kCross, kSecondAnchor, kAnchor };
 
-/// What is done wrong, and whether the modules can see it.
+/// An assembly with a mistake, and whether the modules can see it.
 class Assembly {
  public:
   Assembly(const model::Robot& robot, std::uint64_t seed, Mistake mistake)

@@ -47,7 +47,7 @@ class FaultyNeighbour {
     Bytes changed;
   };
 
-  /// What goes out on one face of a module.
+  /// The stream that goes out on one face of a module.
   struct Stream {
     std::uint16_t number = 0;  ///< Of the session, as the module greets.
     Bytes message;             ///< Begun and not yet complete.

@@ -39,10 +39,10 @@ TEST(Fronts, random_robots_are_decided_in_few_sweeps) {
   }
 }
 
-/// What else made sweeps many: refinement that came to a halt at the rounding of displacements and
-/// loads of kept facets (3534), a root's matrix that rounding had made negative (6226), more kept
-/// facets than the root had room for (10506), batches of one and two facets (4478, 12982), and open
-/// feet that are freed one after the other (5162).
+/// These robots had many sweeps for other reasons: refinement that came to a halt at the rounding
+/// of displacements and loads of kept facets (3534), a root's matrix that rounding had made
+/// negative (6226), more kept facets than the root had room for (10506), batches of one and two
+/// facets (4478, 12982), and open feet that are freed one after the other (5162).
 TEST(Fronts, robots_that_took_many_sweeps_take_few) {
   for (const std::uint64_t seed : test::campaign({3534U, 4478U, 5162U, 6226U, 10506U, 12982U}, 3)) {
     SCOPED_TRACE(::testing::Message() << "random_robot(" << seed << ")");

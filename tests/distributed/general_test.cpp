@@ -654,7 +654,7 @@ TEST(DistributedGeneral, a_module_that_comes_back_knows_its_support) {
             Verdict::kUndecided);
 }
 
-/// What the modules' program does not know is refused, and said.
+/// A robot with what the modules' program does not know is refused, with the reason.
 TEST(DistributedGeneral, what_modules_do_not_know_is_refused) {
   model::RobotSpec spec{.existing = {{0, 0, 0}, {1, 0, 0}}};
   spec.lattice = base::kFaceCentred;

@@ -252,7 +252,7 @@ TEST(Kept, what_leads_nowhere_is_forgotten_before_another_method_is_tried) {
   EXPECT_LT(2 * plan.kept.rounds, 3 * plan.fresh.rounds);
 }
 
-/// Another comes to the cell of a module that was fixed, and is not: the modules cannot know.
+/// Another module comes to the cell of one that was fixed, and is not: the modules cannot know.
 TEST(Kept, no_module_takes_the_cell_of_a_fixed_one) {
   StepsFile file = growing({{0, 0, 0}, {1, 0, 0}}, {}, true);
   file.document.modules.back().is_fixed = true;

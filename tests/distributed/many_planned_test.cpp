@@ -44,7 +44,7 @@ TEST(ManyPlanned, random_robots_are_decided_in_few_sweeps_with_fronts) {
   EXPECT_LE(sweeps.back(), 60);
 }
 
-/// Where nothing holds the robot at first (2478, 2690), and the longest fronts (4478, 5382).
+/// Nothing holds the robot at first in 2478 and 2690; 4478 and 5382 have the longest fronts.
 TEST(ManyPlanned, robots_that_took_many_sweeps_take_few) {
   for (const std::uint64_t seed : test::campaign({2478U, 2690U, 4478U, 5382U}, 2)) {
     SCOPED_TRACE(::testing::Message() << "many_planned_robot(" << seed << ")");

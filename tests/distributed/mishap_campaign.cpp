@@ -34,7 +34,7 @@ model::RobotSpec bare_robot(std::uint64_t seed, std::vector<base::Cell>& plans) 
   return spec;
 }
 
-/// What happens at one time, and the exact verdicts from then on.
+/// The exact verdicts from a time on at which something happens.
 struct Stage {
   Time at = 0;
   bool is_noticed = true;  ///< By somebody, sooner or later: no link that is cut or mended.
@@ -84,7 +84,7 @@ class MishapRun {
     return 1 + rng_.below(most);
   }
 
-  /// How long it takes to lose a neighbour of whom nobody wants anything.
+  /// The time that it takes to lose a neighbour of whom nobody wants anything.
   Time silence_time() const { return timing_.ping_after + agent::lost_after(timing_); }
 
   void add(Fault::Kind kind, Time at, std::int32_t module,
@@ -92,7 +92,7 @@ class MishapRun {
     options_.faults.push_back({.kind = kind, .at = at, .module = module, .face = face});
   }
 
-  /// How long the waves took in the module where they took longest.
+  /// The time that the waves took in the module where they took longest.
   Time wave_time(const sim::Simulation& simulation) const {
     Time longest = 0;
     for (std::int32_t i = 0; i < simulation.agent_count(); ++i) {
@@ -155,7 +155,8 @@ void MishapRun::kill_root() {
   }
 }
 
-/// What is connected with the rest by few links or many; the links between fail at the same time.
+/// Parts a piece of the robot from the rest: the links between them, few or many, fail at the same
+/// time.
 void MishapRun::part(Fault::Kind away, Fault::Kind back) {
   std::vector<bool> is_in(count_, false);
   is_in[static_cast<std::size_t>(some_module())] = true;

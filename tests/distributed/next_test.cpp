@@ -236,8 +236,7 @@ TEST(SimulatedNext, leaves_the_verdict_as_it_is) {
   EXPECT_EQ(plain.agent(0).free_face(base::Direction::kMinusX).verdict, agent::Verdict::kNone);
 }
 
-/// What a module shows is of the robot as it is: a module that comes voids it, and all is judged
-/// anew.
+/// A module shows the robot as it is: a module that comes makes that void, and all is judged anew.
 TEST(SimulatedNext, a_module_that_comes_has_all_faces_judged_anew) {
   const model::RobotSpec spec = held_arm();
   const model::Robot robot = model::Robot::create(spec).value();

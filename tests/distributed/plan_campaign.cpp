@@ -109,7 +109,7 @@ void PlanRun::measure_round() {
   round_ = simulation.result().verdict_time;
 }
 
-/// What every module of the simulated robot answers, beside the exact answer for another one.
+/// Compares the answers of the simulated robot's modules with the exact answer for another robot.
 /// `plans`: how many plans and withdrawals its modules may hold in all.
 void PlanRun::judge(const model::RobotSpec& simulated, const model::RobotSpec& end,
                     std::size_t plans) {

@@ -10,7 +10,7 @@
 #include "holdfast/sim/trace.hpp"
 #include "holdfast/verdict/assessment.hpp"
 
-/// What is true of a simulated robot while modules come and go and plans are told: the exact
+/// Knows what is true of a simulated robot while modules come and go and plans are told: the exact
 /// verdict beside what modules say.
 namespace holdfast::test {
 

@@ -9,8 +9,8 @@
 #include "faulty_neighbour.hpp"
 #include "holdfast/sim/simulation.hpp"
 
-/// What becomes of verdicts and rounds when a module or a link fails without a word, or a module
-/// goes on to speak without sense.
+/// Measures what becomes of verdicts and rounds when a module or a link fails without a word, or a
+/// module goes on to speak without sense.
 namespace holdfast::test {
 
 /// A robot that is safe as it stands and not with what is planned.

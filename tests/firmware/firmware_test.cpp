@@ -133,7 +133,7 @@ model::Robot looped(const std::string& name) {
   return std::move(robot).value();
 }
 
-/// What elimination cannot hold. All twenty: firmware_bench.
+/// Elimination cannot hold these robots. All twenty: firmware_bench.
 TEST(Firmware, decides_robots_with_many_loops) {
   for (const char* name :
        {"block_2x2x2", "middle_planned", "row_planned", "square_planned", "wall_3x1x3"}) {

@@ -7,7 +7,8 @@
 #include "general_robot.hpp"
 #include "holdfast/verdict/assessment.hpp"
 
-/// What must hold of the answer to any robot, for tests on some and campaigns on many of them.
+/// Checks what must hold of the answer to any robot, for tests on some and campaigns on many of
+/// them.
 namespace holdfast::test {
 
 /// One check of one robot.
