@@ -15,8 +15,8 @@ namespace holdfast::io {
 /// none.
 model::Material first_material(const std::string& robot);
 
-/// The material that a document has if it says nothing of it, but for its pitch, on which the
-/// section of beams hangs; not a number for what must be said.
+/// The default material of a document, except for its pitch, on which the section of beams depends;
+/// not a number for what must be said.
 model::Material default_material(const Document& document);
 
 /// The lattice that a document has if it does not say it.

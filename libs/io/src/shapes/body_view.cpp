@@ -17,7 +17,8 @@ namespace {
 
 constexpr int kDiscCorners = 24;
 
-/// Faces whose normals are this little turned towards the eye are seen edge-on.
+/// The cosine up to which a face's normal is turned so little towards the eye that it is seen
+/// edge-on.
 constexpr double kEdgeOn = 1e-9;
 
 std::vector<SeenFace> seen(const std::vector<ShapeFace>& faces) {

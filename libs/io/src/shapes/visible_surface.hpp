@@ -9,7 +9,7 @@
 
 #include "holdfast/model/robot.hpp"
 
-/// What of a robot can be seen in isometric view, exactly and without a drop of painter's paint.
+/// Finds what of a robot can be seen in isometric view, exactly and without painting over anything.
 ///
 /// Seen along (-1, 1, -1), the corners of all cubes fall on the points of one triangular lattice,
 ///   u = x + y (to the right),   v = x - y - 2 z (down),   x, y, z in cells from the lowest corner,

@@ -70,7 +70,7 @@ std::uint64_t record_sum(std::span<const ModuleRecord> records, std::uint64_t fi
 /// The head of a file of so many bytes, of which `begin` are the first ones.
 base::Result<BinaryHead> read_binary_head(std::string_view begin, std::uint64_t file_size);
 
-/// The document that the text behind a head is of: all but modules. Errors: another checksum; as of
+/// The document of the text behind a head: all but modules. Errors: another checksum; those of
 /// read_json(); it has steps.
 base::Result<ReadDocument> read_binary_text(const BinaryHead& head, std::string_view text,
                                             const ReadOptions& options = {});
@@ -91,8 +91,8 @@ struct BinaryStructure {
   std::vector<ModuleRecord> records;  ///< Along the curve.
 };
 
-/// The first planned step of a document and what exists. Errors: as of make_spec(); two modules in
-/// one cell.
+/// The first planned step of a document and what exists. Errors: those of make_spec(); two modules
+/// in one cell.
 base::Result<BinaryStructure> make_binary(const Document& document);
 
 /// The text of a binary structure: all that a document says beside its modules.

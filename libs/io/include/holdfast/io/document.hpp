@@ -171,8 +171,8 @@ base::Result<Sequence> make_sequence(const Document& document);
 /// modules are connected where they are not in the one taken: files for VisibleSim do not say it.
 base::Error with_other_lattice(base::Error error, const Document& document);
 
-/// The robot with the first step; errors as of make_spec(), and of model::Robot::create
-/// with_other_lattice(); threads as of the latter.
+/// Makes the robot with the first step; threads are those of model::Robot::create. Errors: those of
+/// make_spec(), and those of model::Robot::create with_other_lattice().
 base::Result<model::Robot> make_robot(const Document& document, int thread_count = 0);
 
 }  // namespace holdfast::io

@@ -19,11 +19,11 @@ struct MoveReport {
   double seconds = 0;
 };
 
-/// The robot of a document as it stands; `which` is what a message calls it. Errors: as of
+/// The robot of a document as it stands; `which` is what a message calls it. Errors: those of
 /// make_spec(); it has planned modules or steps.
 base::Result<model::RobotSpec> standing_spec(const Document& document, std::string_view which);
 
-/// The robot and where it is to go: existing modules of both. Errors: as of standing_spec() for
+/// The robot and where it is to go: existing modules of both. Errors: those of standing_spec() for
 /// each of them.
 base::Result<plan::MoveTask> move_task(const Document& start, const Document& target);
 

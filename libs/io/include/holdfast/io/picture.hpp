@@ -16,10 +16,10 @@ namespace holdfast::io {
 /// An SVG of the robot in isometric view: every module coloured by its worst connection as in
 /// Fig. 6 of [Piranda 2021] (green to orange safe, red broken, purple unstable, blue fixed, planned
 /// ones dashed), the failing connection marked, the support polygon and the centre of mass, a
-/// legend. Modules look like those of their lattice: cubes, prisms, standing discs, balls. Of the
-/// obstacles, which are those that the robot was made with, what is near is drawn translucent; the
-/// facets that touch say what they do; payloads, and gravity that does not point straight down, are
-/// arrows. Self-contained; `title` is shown and escaped.
+/// legend. Modules look like those of their lattice: cubes, prisms, standing discs, balls. Near
+/// obstacles are drawn translucent; `obstacles` are those that the robot was made with. The facets
+/// that touch say what they do; payloads, and gravity that does not point straight down, are
+/// arrows. The text is self-contained; `title` is shown and escaped.
 std::string write_svg(const model::Robot& robot, const verdict::Assessment& assessment,
                       std::string_view title, std::span<const model::Obstacle> obstacles = {});
 
