@@ -272,8 +272,8 @@ std::optional<std::string> find_connection_fault(const Connections& connections,
 
 namespace {
 
-/// Finds a module below one that rests on a floor: nobody may be below it, not even what hangs from
-/// a fixed module.
+/// Finds a module below one that rests on a floor: no module may be below the floor, not even one
+/// that is held by a fixed module.
 std::optional<std::string> find_module_below_floor(const Robot& robot) {
   const auto level = robot.barring_level();
   if (!level) {

@@ -176,9 +176,9 @@ WholeLoads add_ranks(const model::Robot& robot, std::size_t broken_count, Loads&
 /// do to a load ratio, whichever is less; and never less than what is promised (docs/solver.md).
 constexpr double kMultigridFactor = 10;
 
-/// Where a verdict that hung on the error is sought with more digits, rounding may leave fewer than
-/// the two answers have in common: in a tower of 111,111 levels they differed by a thirtieth of the
-/// error.
+/// The additional factor for a verdict that depends on the error and is sought with more digits.
+/// Rounding may leave fewer digits than the two answers have in common: in a tower of 111,111
+/// levels they differed by a thirtieth of the error.
 constexpr double kFinerFactor = 10;
 
 /// Refinements in double that find nothing but rounding differ by less than their error now and

@@ -37,7 +37,7 @@ enum class ErrorKind : std::uint8_t {
 };
 
 /// The reason why the robot answers otherwise than the exact answer: another verdict, another
-/// contact law, or a largest load ratio that is further away than is promised of one law.
+/// contact law, or a largest load ratio that differs by more than is promised for one law.
 enum class Difference : std::uint8_t {
   kNone,             ///< It does not.
   kModules,          ///< The exact answer is for modules that were taken off, too.

@@ -84,7 +84,7 @@ struct RobotCells {
 };
 
 /// Makes a robot without a file. Its modules are the existing ones, then the planned ones, each in
-/// the order given. Errors: as of model::Robot::create. 0 threads: as many as there are cores.
+/// the order given. Errors: those of model::Robot::create. 0 threads: as many as there are cores.
 base::Result<model::Robot> make_robot(const RobotCells& cells, int thread_count = 0);
 
 /// The options of a check.
@@ -139,7 +139,7 @@ base::Result<Structure> load_file(const std::filesystem::path& path, int thread_
                                   const io::ReadOptions& options = {});
 
 /// Builds the robot of a document with its first planned step, as load_text() does of what it has
-/// read. `name` is for a document without one. Errors: as of io::make_robot.
+/// read. `name` is for a document without one. Errors: those of io::make_robot.
 base::Result<Structure> make_structure(io::Document document, std::string_view name = {},
                                        int thread_count = 0);
 

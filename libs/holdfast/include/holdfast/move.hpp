@@ -34,8 +34,8 @@ struct MoveRequest {
   std::function<void(std::size_t states, int distance)> progress = {};
 };
 
-/// Seeks moves from the shape of one document to that of another. Errors: as of io::move_task() and
-/// plan::find_moves().
+/// Seeks moves from the shape of one document to that of another. Errors: those of io::move_task()
+/// and plan::find_moves().
 base::Result<io::MoveReport> seek_moves(const io::Document& start, const io::Document& target,
                                         const MoveRequest& request = {});
 

@@ -46,7 +46,7 @@ struct OrderRequest {
   std::function<void(std::size_t states, std::size_t grown, std::size_t shrunk)> progress = {};
 };
 
-/// Seeks an order for all modules of a document, existing or planned. Errors: as of
+/// Seeks an order for all modules of a document, existing or planned. Errors: those of
 /// io::make_spec() and plan::find_robot_order().
 base::Result<io::OrderReport> seek_order(const io::Document& target, const OrderRequest& request);
 
@@ -57,8 +57,8 @@ struct ProvedOrder {
   plan::CertificateCheck check;
 };
 
-/// Replays the certificate in a text, see plan::verify(). Of another robot than `target` it is an
-/// error.
+/// Replays the certificate in a text, see plan::verify(). Error: it is of another robot than
+/// `target`.
 base::Result<ProvedOrder> verify_order_certificate(
     std::string_view text, const std::optional<model::RobotSpec>& target = {},
     int thread_count = 0);

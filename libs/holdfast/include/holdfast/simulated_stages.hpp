@@ -67,7 +67,7 @@ base::Result<SimulatedStages> simulate_stages(
 std::string simulated_stages_text(const StepsFile& file, const SimulatedStages& stages,
                                   const TextOptions& options = {});
 
-/// Keys as of write_steps_json() where they mean the same.
+/// Writes the keys of write_steps_json() where they mean the same.
 void write_simulated_stages_json(std::ostream& out, const StepsFile& file,
                                  const SimulatedStages& stages);
 

@@ -40,8 +40,8 @@ constexpr SupportCorners fixed_support() { return {.stable = true}; }
 SupportCorners merge(const SupportCorners& a, const SupportCorners& b);
 
 /// Merges corners that have been rounded to whole units: three are taken for being on one line
-/// where rounding may have put them off it. Of several on one line the two that are furthest apart
-/// are kept, which says most about a fourth.
+/// where rounding may have put them off it. It keeps the two of several on one line that are
+/// furthest apart, which says most about a fourth.
 SupportCorners merge_rounded(const SupportCorners& a, const SupportCorners& b);
 
 }  // namespace holdfast::mechanics

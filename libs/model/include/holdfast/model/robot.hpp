@@ -249,7 +249,7 @@ class Robot {
 
   std::size_t lattice_count() const { return static_cast<std::size_t>(lattice_.direction_count); }
 
-  /// Whether a spec says all of a robot, so that it must hang together.
+  /// Whether a spec says all of a robot, so that it must be connected.
   enum class Extent : std::uint8_t { kWhole, kPart };
 
   /// Takes everything from the spec. Returns the first fault.

@@ -10,7 +10,7 @@
 
 #include "holdfast/agent/link.hpp"
 
-/// What the lines between modules do to packets, and how modules wait for them, as data.
+/// Describes what the lines between modules do to packets, and how modules wait for them.
 ///
 /// A link is two lines, one for each direction. A packet of B bytes occupies its line for
 ///   packet_time + ceil((B + overhead_bytes) bits_per_byte ticks_per_second / bit_rate)

@@ -166,7 +166,8 @@ inline bool breaks(double load_ratio) { return load_ratio >= 1 - kLoadRatioTie; 
 /// is pull down. Then the exact law is asked as well.
 bool has_pulling_facets(const model::Robot& robot, const Assessment& assessment);
 
-/// Whether it stays where it is, as far as that is known: none where the verdict hangs on it.
+/// Whether the robot stays where it is, as far as that is known: none where the verdict depends on
+/// it.
 inline std::optional<bool> known_stability(const Assessment& assessment) {
   const bool is_open = !assessment.is_stable && assessment.verdict == Verdict::kUndecided;
   return is_open ? std::nullopt : std::optional(assessment.is_stable);
