@@ -37,8 +37,7 @@ class Checkpoint final : public solver::ContactJournal {
   void remove() const;
 
  private:
-  /// One search, and the states of all ranks' facets along the curve that it has come to; none at
-  /// first.
+  /// One search, and the latest states of all ranks' facets along its curve; none at first.
   struct Search {
     mechanics::ContactLaw law = mechanics::ContactLaw::kRegularised;
     double gamma = 0;

@@ -102,8 +102,9 @@ void end_on_signal(int) {
   std::_Exit(kExitFailure);
 }
 
-/// PETSc 3.18 tells of memory that it does not get with a line for the code: its allocators hand an
-/// error on whose first fields its macro takes for others.
+/// Ends all ranks when PETSc has an error. PETSc 3.18 reports memory that it does not get with a
+/// line number as the code: the macro misreads the first fields of an error that its allocators
+/// hand on.
 PetscErrorCode end_all_on_petsc_error(MPI_Comm, int, const char* function, const char*,
                                       PetscErrorCode code, PetscErrorType, const char* message,
                                       void*) {

@@ -173,8 +173,9 @@ std::vector<Element> NetworkStructure::addable(const ElementSet& state, std::uin
   return closing;
 }
 
-/// Elements on a closed way of others, and those with nothing behind them: an element without which
-/// a node is out of reach takes with it what hangs there, unless that is nothing [Tarjan 1972].
+/// The elements that lie on a closed path of others, and those with nothing behind them. An element
+/// without which a node is out of reach takes all with it that is held by it alone, unless that is
+/// nothing [Tarjan 1972].
 std::vector<Element> NetworkStructure::removable(const ElementSet& state,
                                                  std::uint64_t seed) const {
   struct Visit {

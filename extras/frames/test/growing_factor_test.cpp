@@ -47,7 +47,7 @@ LowRankTerm random_term(base::Rng& rng, std::int32_t a, std::int32_t b) {
           .stiffness = block(root * root.transpose() + 0.5 * Matrix6::Identity())};
 }
 
-/// A connected graph: each node hangs on an earlier one or the ground, then pairs at random.
+/// A connected graph: each node is joined to an earlier one or the ground, then pairs at random.
 std::vector<LowRankTerm> random_terms(base::Rng& rng, std::int32_t node_count, int more) {
   std::vector<LowRankTerm> terms;
   for (std::int32_t node = 0; node < node_count; ++node) {
