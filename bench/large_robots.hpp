@@ -47,9 +47,9 @@ struct Clock {
 
 inline double seconds_since(double start) { return Clock::now() - start; }
 
-/// Whether one more run is worth it: three and a second in all, unless they take seconds each. The
-/// fastest counts: first runs pay for fresh memory, which a virtual machine hands out slowly and at
-/// very different speeds, for whoever asks.
+/// Whether to run once more: three times and for a second in all, unless runs take seconds each.
+/// The fastest counts: first runs pay for fresh memory, which a virtual machine hands out slowly
+/// and at very different speeds.
 inline bool is_once_more(int run_count, double total_seconds) {
   return total_seconds < 5 && run_count < 50 && (run_count < 3 || total_seconds < 1);
 }

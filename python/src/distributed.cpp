@@ -103,7 +103,7 @@ Course course_of(const SharedStructure& structure, const std::vector<Event>& eve
   return course;
 }
 
-/// Tells how far it is and goes on.
+/// Reports how far the work is and continues it.
 auto going_on(Watch& watch) {
   return [&watch](const sim::SimulationResult& result) {
     watch(result.events, result.rounds);

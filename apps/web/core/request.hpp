@@ -56,7 +56,7 @@ base::Result<model::RobotSpec> spec_of(const Request& request);
 bool has_double_cell(const io::Document& document);
 
 /// The document that the page's modules are when everything else is as in `base`: what a file said
-/// about a module, its colour and attributes, stays with its cell. Errors: as of io::read_json.
+/// about a module, its colour and attributes, stays with its cell. Errors: those of io::read_json.
 base::Result<io::Document> edited(const io::Document& base, const Request& request);
 
 /// The text for Request::more of a document that was opened.

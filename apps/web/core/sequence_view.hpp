@@ -9,7 +9,7 @@
 
 namespace holdfast::web {
 
-/// A sequence whose steps can be done, for who looks at it stage by stage.
+/// A sequence whose steps can be done, to be looked at stage by stage.
 class SequenceView {
  public:
   explicit SequenceView(io::Sequence sequence);

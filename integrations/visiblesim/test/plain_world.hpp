@@ -20,7 +20,7 @@ class PlainWorld {
  public:
   explicit PlainWorld(Ensemble& ensemble) : ensemble_(ensemble) {}
 
-  /// Puts a module into a cell; it starts now. `random` as of Block.
+  /// Puts a module into a cell, where it starts now; `random` is that of Block.
   void attach(const base::Cell& cell, std::uint16_t random);
 
   /// Modules that are there from the beginning start together.
