@@ -106,8 +106,8 @@ TEST(Fronts, robots_of_every_lattice_on_any_supports_are_decided_by_them_alone) 
   EXPECT_LE(safe_alone, 1);
 }
 
-/// Robots that hang on the weak springs of one foot: from single precision of S other states would
-/// follow, of which none is one that falls, and the exact law holds the robot.
+/// These robots are held by the weak springs of one foot: S in single precision would have other
+/// states, none of which falls, and the exact law holds the robot.
 TEST(Fronts, a_robot_that_hangs_on_weak_springs_is_not_safe) {
   const std::tuple<base::Lattice, std::uint64_t, std::size_t> robots[] = {
       {base::kFaceCentred, 1701, 3},

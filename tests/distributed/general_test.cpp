@@ -66,7 +66,7 @@ TEST(DistributedGeneral, own_masses_decide_exactly_whether_it_topples_on_a_floor
   }
 }
 
-/// Three cubes upright tip over an edge when gravity leans by more than atan(20 / 60).
+/// Three cubes upright tip over an edge when gravity is turned by more than atan(20 / 60).
 TEST(DistributedGeneral, a_tower_on_a_slope_tips_at_its_edge) {
   const double limit = std::atan2(20, 60);
   for (const double lean : {0.98, 1.02}) {
@@ -79,8 +79,9 @@ TEST(DistributedGeneral, a_tower_on_a_slope_tips_at_its_edge) {
   }
 }
 
-/// Two cubes high and two wide on one foot: the centre of mass is over the foot's edge, and stays
-/// there where gravity leans along it or both ends bear the same. There is nothing to spare.
+/// The centre of mass of two cubes high and two wide is over the edge of their one foot, and stays
+/// there if gravity is turned along the edge or both ends carry the same. There is nothing to
+/// spare.
 TEST(DistributedGeneral, a_mass_over_the_edge_is_not_safe_whatever_else_acts) {
   const model::RobotSpec plain{.existing = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 2}}};
   model::RobotSpec leaning = plain;
@@ -143,7 +144,8 @@ TEST(DistributedGeneral, a_tower_stands_on_every_face_that_gravity_presses_on) {
   }
 }
 
-/// Walls, ceilings, slots and bonded supports; other masses, payloads, gravity that leans.
+/// The robots have walls, ceilings, slots and bonded supports; other masses, payloads, and gravity
+/// that is not straight down.
 TEST(DistributedGeneral, random_robots_are_decided_like_the_exact_answer) {
   int count = 0;
   int undecided_alone = 0;
@@ -222,9 +224,9 @@ TEST(DistributedGeneral, random_robots_of_prisms_are_decided_like_the_exact_answ
   EXPECT_LT(8 * counts.undecided, counts.all);
 }
 
-/// Robots that hang on the weak springs of feet that tilt, or of which a foot that is freed slides
-/// away, and a step of Newton's method that has to be very short; and one whose further solution of
-/// the regularised law, which breaks, has 1.9 times the load ratio.
+/// Some of these robots are held by the weak springs of feet that tilt, or a foot that is freed
+/// slides away; a step of Newton's method has to be very short; and one has a further solution of
+/// the regularised law, which breaks, with 1.9 times the load ratio.
 TEST(DistributedGeneral, robots_that_were_undecided_are_decided_like_the_exact_answer) {
   struct Seeds {
     base::Lattice lattice;
@@ -528,8 +530,8 @@ TEST(DistributedGeneral, a_gap_beyond_its_limit_is_told_to_all_modules) {
   }
 }
 
-/// Connectors that never break: contact states need their forces all the same. A tower with an arm
-/// on a lean floor, which tips or stands whatever its connections bear.
+/// Contact states need their forces even if connectors never break: a tower with an arm on a tilted
+/// floor tips or stands whatever its connections carry.
 TEST(DistributedGeneral, contact_is_found_however_strong_connections_are) {
   for (const double strength : {1e9, model::ConnectorLaw::kUnlimited}) {
     for (const double lean : {0.98, 1.02}) {

@@ -296,8 +296,8 @@ TEST(Kept, a_step_of_more_than_modules_can_plan_leaves_no_doubt_behind) {
   }
 }
 
-/// One plan closes a loop, which takes a beam more, the other hangs by none: together they have as
-/// many beams as they would hang by, and yet another method is needed.
+/// One plan closes a loop, which takes a beam more; the other is held by none. Together they have
+/// as many beams as would hold both, and yet another method is needed.
 TEST(Kept, a_plan_that_touches_nothing_is_told_apart) {
   const auto robot = model::Robot::create(
       {.existing = {{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, -2, 0}, {0, -3, 0}}});

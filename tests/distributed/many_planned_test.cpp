@@ -82,7 +82,7 @@ TEST(ManyPlanned, bad_links_change_no_verdict) {
   }
 }
 
-/// Whoever is alive in the end has a verdict, and none is a wrong `safe`.
+/// Every module that is alive in the end has a verdict, and none is a wrong `safe`.
 TEST(ManyPlanned, a_fault_makes_no_wrong_safe) {
   base::Rng rng(7);
   for (std::uint64_t seed = 0; seed < test::campaign(24U); ++seed) {
@@ -109,8 +109,9 @@ void expect_all(const sim::Simulation& simulation, agent::Verdict verdict, agent
   }
 }
 
-/// A fixed tower of 3 with an arm that is planned piece by piece, told and withdrawn in one
-/// module after the other. An arm of n breaks where n^2 times the ratio of one exceeds 1 (statics).
+/// The robot is a fixed tower of 3 with an arm that is planned piece by piece; one module after the
+/// other is told of the pieces and their withdrawal. An arm of n breaks where n^2 times the ratio
+/// of one exceeds 1 (statics).
 TEST(ManyPlanned, plans_come_and_go_beyond_five) {
   model::RobotSpec spec;
   spec.existing = {{0, 0, 0}, {0, 0, 1}, {0, 0, 2}};

@@ -27,7 +27,7 @@ model::Robot make_robot(const model::RobotSpec& spec) {
   return std::move(robot).value();
 }
 
-/// The robot without its plan: it is told and carried out by what happens.
+/// The robot without its plan, which is announced and carried out as something that happens.
 model::RobotSpec bare_robot(std::uint64_t seed, std::vector<base::Cell>& plans) {
   model::RobotSpec spec = random_robot(seed, 3, kModulesMax);
   plans = std::exchange(spec.planned, {});
@@ -84,7 +84,7 @@ class MishapRun {
     return 1 + rng_.below(most);
   }
 
-  /// The time that it takes to lose a neighbour of whom nobody wants anything.
+  /// The time that it takes to lose a neighbour from which nothing is wanted.
   Time silence_time() const { return timing_.ping_after + agent::lost_after(timing_); }
 
   void add(Fault::Kind kind, Time at, std::int32_t module,

@@ -130,7 +130,8 @@ using RandomSpec = model::RobotSpec (*)(std::uint64_t seed);
 
 model::RobotSpec cubes_on_a_floor(std::uint64_t seed) { return test::random_robot(seed, 3, 24); }
 
-/// Walls, ceilings, steps, bonded or not, masses and payloads, gravity that leans.
+/// Random robots with walls, ceilings and steps, bonded or not, masses and payloads, and gravity
+/// that is not straight down.
 template <int Index>
 model::RobotSpec held_anywhere(std::uint64_t seed) {
   return test::general_robot(test::kLattices[Index], seed);
@@ -210,7 +211,7 @@ struct StageOfStep {
   plan::Stage stage;
 };
 
-/// The largest load ratios of a stage by the solutions of the paper's law, of which it may have
+/// The largest load ratios of a stage in the two solutions of the paper's law, which may have
 /// several, that load it least and most.
 verdict::LoadRange range_of_solutions(const StageOfStep& of) {
   verdict::LoadRange range = {.low = -1e300, .high = -1e300};
@@ -495,7 +496,7 @@ TEST(Stages, what_hangs_on_a_carrier_is_held_by_the_weaker_connector_of_the_two)
   }
 }
 
-/// A battery on the foot's edge: the robot stands with it, and topples once it hangs beside it.
+/// A robot stands with a battery on top of its column, and topples once the battery is beside it.
 TEST(Stages, a_robot_topples_by_the_mass_of_what_it_carries) {
   model::RobotSpec spec{.existing = {{0, 0, 0}, {0, 0, 1}, {0, 0, 2}}};
   const model::Step step{.moves = {{.from = {0, 0, 2}, .to = {1, 0, 1}}}};

@@ -14,8 +14,8 @@
 /// verdict beside what modules say.
 namespace holdfast::test {
 
-/// The robot as somebody sees it who looks at it: which modules are attached and connected, what is
-/// planned. A module that is silent, or whose link is cut, still carries and weighs.
+/// The robot as an observer sees it: which modules are attached and connected, what is planned. A
+/// module that is silent, or whose link is cut, still carries and weighs.
 class TrueRobot {
  public:
   /// All modules that are ever there; the planned ones are told of by announcements.
