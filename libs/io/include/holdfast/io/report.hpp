@@ -27,7 +27,7 @@ std::string one_line(std::string_view text);
 /// is the one that was assessed.
 std::string reason_text(const model::Robot& robot, const verdict::Reason& reason);
 
-/// Returns the same sentence, with the cells that verdict::cells_of() has found.
+/// Returns the sentence for a reason whose cells verdict::cells_of() has found.
 std::string reason_text(const verdict::Reason& reason, std::span<const base::Cell> cells);
 
 /// The facts of the whole robot that a report needs if its entry's robot is only a part.
