@@ -59,7 +59,7 @@ class Ball {
   /// An upper bound of the root of the largest value.
   double root_high() const { return high() <= 0 ? 0 : upward(std::sqrt(high())); }
 
-  /// The ball with so much more on both sides.
+  /// The ball that reaches further by so much on both sides.
   Ball widened(double by) const { return rounded(middle_, radius_ + by); }
 
  private:

@@ -42,8 +42,8 @@ constexpr std::size_t kTopplingCountMax = 1000;
 /// again.
 constexpr double kFinerTolerance = 1e-6;
 
-/// The direct solver comes first for such a verdict if no more blocks than this fill in per module:
-/// a solid cube of 17, 4,913 modules, has 60.
+/// The direct solver comes first when a verdict is sought again if no more blocks than this fill in
+/// per module: a solid cube of 17, 4,913 modules, has 60.
 constexpr std::size_t kPreciseFillMax = 100;
 
 /// The direct solver comes last for robots of more modules, after multigrid with some more digits

@@ -190,8 +190,9 @@ std::vector<model::Limit> connection_limits(const model::Robot& robot,
 /// x, y, z in rad. No rows where no equilibrium is known.
 Rows displacement_rows(const CheckResult& result);
 
-/// The force of the ground on every module, in the same order: force in N, moment about the
-/// module's centre in N mm, both from what its facets carry. Empty where no equilibrium is known.
+/// The force of the ground on every module, in the order of Robot::modules(): force in N, moment
+/// about the module's centre in N mm, made of what its facets carry. Empty where no equilibrium is
+/// known.
 std::vector<base::Vec6<double>> ground_forces(const model::Robot& robot, const CheckResult& result);
 
 /// The certificate of a check's proof, for holdfast-checker; see docs/formats.md. Errors: there is

@@ -16,7 +16,7 @@
 /// it (MPI) is not known here. All of them call the same functions in the same order.
 namespace holdfast::host {
 
-/// Something that another rank owns.
+/// An item that another rank owns.
 struct Original {
   std::int32_t rank = 0;
   std::int32_t index = 0;  ///< There.
@@ -24,7 +24,7 @@ struct Original {
   friend auto operator<=>(const Original&, const Original&) = default;
 };
 
-/// A copy of it here, in an array whose first items are this rank's own.
+/// A copy of another rank's item, in an array whose first items are this rank's own.
 struct Copy {
   Original original;
   std::int32_t place = 0;  ///< Index in that array.

@@ -58,7 +58,8 @@ class ConnectionLaw {
     return term.factor * (p[term.index] + q[term.index]);
   }
 
-  /// The larger of both, a NaN if one is. Which one it is nobody can foresee, so no branch asks.
+  /// The larger bending moment of the two axes, a NaN if one is. Nobody can foresee which one is
+  /// larger, so no branch asks.
   double bending(const Vec& p, const Vec& q) const {
     const double x = std::abs(difference(bend_x_, p, q));
     const double y = std::abs(difference(bend_y_, p, q));
