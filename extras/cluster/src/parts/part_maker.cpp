@@ -131,7 +131,7 @@ class Neighbourhood {
     std::int32_t direction = 0;
   };
 
-  /// The neighbours of that module.
+  /// The module beside the one that a question asks about.
   struct Beside {
     host::Original original;
     Record record;
