@@ -22,7 +22,8 @@ struct Comparison {
   int depth = 0;  ///< Of the spanning tree.
   /// The robot names the worst connection that the exact answer has, with another limit.
   bool has_other_limit = false;
-  /// Whether only one of both says that a gap opens, and none is within 2 % of its limit.
+  /// Whether only the robot, or only the exact answer, says that a gap opens, and none is within 2
+  /// % of its limit.
   bool has_other_gaps = false;
   sim::SimulationResult result;
 

@@ -96,8 +96,8 @@ TEST(ErrorKind, is_a_bound_just_where_balance_alone_gives_the_forces) {
   EXPECT_GT(count, test::campaign(80, 10));
 }
 
-/// The difference is none where both say the same, by the same law and as far as promised; else the
-/// report knows why.
+/// The difference is none where robot and exact solver say the same, by the same law and as far as
+/// promised; else the report knows why.
 TEST(Difference, is_named_wherever_robot_and_exact_solver_answer_otherwise) {
   constexpr std::size_t kFewModules = 6;  // Large ones with loops take long.
   int count = 0;
