@@ -179,7 +179,7 @@ int run_random(const Robots& robots, bool is_noisy) {
   return tally.wrong + tally.undecided;
 }
 
-/// What random robots of general_robot() are made into.
+/// A way to change the random robots of general_robot().
 struct Variety {
   bool is_planned = false;
   bool is_turned = false;
@@ -296,7 +296,7 @@ struct NamedLink {
 const NamedLink kBlinkyBlocks[] = {{"v1", sim::blinky_blocks_v1()},
                                    {"v2", sim::blinky_blocks_v2()}};
 
-/// Who still shows the old `safe`, and for how long did anybody?
+/// Counts modules that still show the old `safe`, and reports the longest time that any did.
 int run_stale(std::uint64_t from, std::uint64_t to) {
   constexpr const char* kNames[] = {"one module dies", "three die", "a link is cut"};
   int stale_count = 0;
@@ -335,7 +335,7 @@ int run_stale(std::uint64_t from, std::uint64_t to) {
   return stale_count;
 }
 
-/// Does every run end with a verdict at every other module?
+/// Counts runs that do not end with a verdict at every other module.
 int run_liars(std::uint64_t from, std::uint64_t to) {
   using Kind = test::FaultyOptions::Kind;
   int waiting_runs = 0;
@@ -405,7 +405,7 @@ int run_storms(std::uint64_t from, std::uint64_t to) {
   return tally.faults();
 }
 
-/// So many runs, the kinds in turns.
+/// Does all these runs, the kinds in turns.
 int run_mishaps(std::uint64_t from, std::uint64_t to) {
   std::array<test::MishapTally, test::kMishapCount> tallies;
   for (std::uint64_t run = from; run < to; ++run) {

@@ -87,8 +87,8 @@ int check_invariants(const base::Lattice& lattice, std::uint64_t first, std::uin
 
 // ---- Elastic, brittle and limit load
 
-/// What happens when loads grow and connections break for good: the connections at the largest load
-/// ratio are released, all or one at a time, and the rest is solved again.
+/// Lets loads grow and connections break for good: the connections at the largest load ratio are
+/// released, all or one at a time, and the rest is solved again.
 struct Breaking {
   double first = 0;    ///< Factor of all loads at which the first breaks.
   double highest = 0;  ///< The highest factor that any stage on the way bears.

@@ -17,8 +17,8 @@
 #include "holdfast/model/lattice_beam.hpp"
 #include "holdfast/model/robot.hpp"
 
-/// What the programs of `./dev bench solver` share. Each solves one structure in a process of its
-/// own, so that its memory can be told, and leaves the displacements in a file for the comparison.
+/// Serves the programs of `./dev bench solver`. Each solves one structure in a process of its own,
+/// so that its memory can be measured, and leaves the displacements in a file for the comparison.
 namespace holdfast::bench {
 
 using Displacement = std::vector<base::Vec6<double>>;
@@ -47,9 +47,9 @@ struct Clock {
 
 inline double seconds_since(double start) { return Clock::now() - start; }
 
-/// Whether one more run is worth it: three and a second in all, unless they take seconds each. The
-/// fastest counts: first runs pay for fresh memory, which a virtual machine hands out slowly and at
-/// very different speeds, for whoever asks.
+/// Whether to run once more: three times and for a second in all, unless runs take seconds each.
+/// The fastest counts: first runs pay for fresh memory, which a virtual machine hands out slowly
+/// and at very different speeds.
 inline bool is_once_more(int run_count, double total_seconds) {
   return total_seconds < 5 && run_count < 50 && (run_count < 3 || total_seconds < 1);
 }
@@ -80,7 +80,7 @@ Timing fastest(const Run& run) {
   return timing;
 }
 
-/// What a run tells bench/solver.sh.
+/// Prints the results of a run for bench/solver.sh.
 inline void print_run(std::size_t count, const Timing& timing, int iterations) {
   std::printf("%zu %.6f %.1f %d\n", count, timing.seconds, timing.mb, iterations);
 }

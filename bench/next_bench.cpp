@@ -67,7 +67,7 @@ struct Timed {
   double again_seconds = std::numeric_limits<double>::infinity();
 };
 
-/// On one thread; the fastest of several runs.
+/// Times all candidates on one thread; the fastest of several runs counts.
 Timed time(const model::RobotSpec& spec, const std::vector<base::Cell>& cells) {
   Timed timed;
   for (int i = 0; i < kRunCount; ++i) {

@@ -86,7 +86,7 @@ int measure_bandwidth() {
   return 0;
 }
 
-/// What iterations cost without all that comes before and after them: many less a few.
+/// Measures iterations without all that comes before and after them: many less a few.
 int measure_iteration(const std::string& family, std::size_t size, int thread_count) {
   const auto robot = model::Robot::create(spec_of(family, size)).value();
   double seconds[2];

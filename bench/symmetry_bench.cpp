@@ -26,7 +26,7 @@ using solver::Method;
 /// multigrid promises 1e-4 for each of two.
 constexpr double kSameShare = 1e-3;
 
-/// How a robot comes out, in its own frame.
+/// The answer for a robot, in its own frame.
 struct Answer {
   verdict::Assessment assessment;
   std::map<std::pair<base::Cell, base::Cell>, double> load_ratio;
@@ -64,7 +64,7 @@ Answer answer(const model::RobotSpec& spec, int turn, Method method) {
   return answer;
 }
 
-/// What differs, in words; empty if nothing does.
+/// Says what differs; empty if nothing does.
 std::string difference(const Answer& a, const Answer& b) {
   if (a.assessment.verdict != b.assessment.verdict) {
     return fmt::format("{} or {}", name(a.assessment.verdict), name(b.assessment.verdict));

@@ -7,6 +7,7 @@
 - applications include only the facade, and name only the rooms that it exports
 - files stop at 800 lines, lines at 100 characters; functions stop at 70 lines
 - every source begins with the two SPDX lines; every header has #pragma once
+- no block of /// begins with a word that leaves its subject to the neighbour, such as "Of"
 - every room has a README.md of 10 to 40 lines
 - no folder of a room keeps more than 25 files, and includes between its folders go one way
 - no tab, no trailing blank, no path of a machine, no TODO without an issue number
@@ -25,6 +26,12 @@ FUNCTION_LINES_MAX = 70
 COLUMNS_MAX = 100
 FOLDER_FILES_MAX = 25
 HEAPS = {'agent': 69}  # What is to be divided yet may not grow.
+# A block of /// that begins so has no subject, or one that its neighbour has to name.
+FRAGMENT = re.compile(r'(After|Also|And|As|At|Before|But|By|False|For|From|In|Its?|None|Null|'
+                      r'nullptr|Of|On|So|Such|That|The same|They|Those|To|Towards|Which|Whose?|'
+                      r'With|Without)\b')
+FRAGMENT_ROOMS = ('libs/agent/', 'libs/limit/', 'libs/module/', 'libs/plan/', 'libs/solver/',
+                  'extras/emulator/', 'firmware/')  # To be reworded, then taken off.
 FREESTANDING = {'base', 'boards', 'mechanics', 'agent', 'module'}
 APPLICATIONS = ('apps/', 'examples/', 'python/')
 FACADE_HEADERS = {'holdfast', 'distributed', 'emulated', 'exit_code', 'file_ending', 'move',
@@ -126,7 +133,8 @@ def check_functions(root, names):
         name, start, end, function = entry.split(' ', 3)
         count = int(end) - int(start) + 1
         if count > FUNCTION_LINES_MAX:
-            fault(name, start, f'{count} lines in {function}, allowed are {FUNCTION_LINES_MAX}')
+            fault(name, start, f'expected at most {FUNCTION_LINES_MAX} lines in {function}, '
+                               f'found {count}')
 
 
 def check_text(name, lines):
@@ -134,9 +142,19 @@ def check_text(name, lines):
         if '\t' in line or line != line.rstrip():
             fault(name, number, 'tab or trailing blank')
         if len(line) > COLUMNS_MAX and 'http' not in line:
-            fault(name, number, f'{len(line)} columns, allowed are {COLUMNS_MAX}')
+            fault(name, number, f'expected at most {COLUMNS_MAX} columns, found {len(line)}')
         if re.search(r'TODO(?!\(#\d+\))', line) and not name.endswith(('tidy.py', 'STYLE.md')):
             fault(name, number, 'TODO without an issue number')
+
+
+def check_comments(name, lines):
+    is_within = False
+    for number, line in enumerate(lines, 1):
+        block = re.match(r'\s*///(?!<) ?(.*)', line)
+        start = FRAGMENT.match(block[1]) if block and not is_within else None
+        if start and not name.startswith(FRAGMENT_ROOMS):
+            fault(name, number, f'expected a sentence with its subject, found "{start[0]} ..."')
+        is_within = block is not None
 
 
 def check_source(name, lines, links, exported):
@@ -145,7 +163,8 @@ def check_source(name, lines, links, exported):
     if name.endswith('.hpp') and '#pragma once' not in lines:
         fault(name, 1, 'no #pragma once')
     if len(lines) > FILE_LINES_MAX:
-        fault(name, len(lines), f'{len(lines)} lines, allowed are {FILE_LINES_MAX}')
+        fault(name, len(lines), f'expected at most {FILE_LINES_MAX} lines, found {len(lines)}')
+    check_comments(name, lines)
     check_includes(name, lines, links)
     check_named_rooms(name, lines, links, exported)
 
@@ -155,7 +174,7 @@ def check_room_readmes(root):
         readme = room / 'README.md'
         count = len(readme.read_text().splitlines()) if readme.is_file() else 0
         if not 10 <= count <= 40:
-            fault(readme.relative_to(root), 1, f'{count} lines, a room has a README of 10 to 40')
+            fault(readme.relative_to(root), 1, f'expected 10 to 40 lines, found {count}')
 
 
 def folder_arrows(room):
@@ -176,7 +195,8 @@ def check_folders(root):
             count = sum(path.suffix in SOURCE_SUFFIXES for path in folder.glob('*.[ch]pp'))
             allowed = HEAPS.get(room.name, FOLDER_FILES_MAX)
             if count > allowed:
-                fault(folder.relative_to(root), 1, f'{count} files, allowed are {allowed}')
+                fault(folder.relative_to(root), 1,
+                      f'expected at most {allowed} files, found {count}')
         arrows = folder_arrows(room)
         while arrows:
             ends = [one for one, others in arrows.items() if not others & arrows.keys()]

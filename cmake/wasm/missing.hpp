@@ -220,7 +220,7 @@ constexpr auto max_element(Range&& range, Compare compare = {}, Projection proje
                           holdfast_detail::by(compare, projection));
 }
 
-/// As values: a result of std::minmax_element is of places.
+/// Returns the extremes as values, where std::minmax_element returns their places.
 template <class Range, class Compare = holdfast_detail::Less,
           class Projection = holdfast_detail::Identity>
 constexpr auto minmax(Range&& range, Compare compare = {}, Projection projection = {}) {

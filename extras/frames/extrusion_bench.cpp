@@ -27,7 +27,7 @@ using namespace holdfast;
 
 constexpr double kLimit = 1.5;
 
-/// What the study's problems are not: two sag when done, two it left out.
+/// The problems that are not in the study: two sag when done, two it left out.
 constexpr std::string_view kNotInStudy[] = {"klein_bottle_trail", "rotated_dented_cube",
                                             "robarch_tree", "DJMM_bridge"};
 

@@ -4,7 +4,7 @@
 
 #include "common.hpp"
 
-/// Paths, texts and numbers, as Python gives them.
+/// Reads paths, texts and numbers as Python gives them.
 namespace holdfast::python {
 namespace {
 

@@ -12,7 +12,7 @@ std::string shape_text(const py::array& array) {
   return py::str(array.attr("shape")).cast<std::string>();
 }
 
-/// Whatever numpy makes of it, or holdfast.Error.
+/// Makes an array of whatever numpy takes, or raises holdfast.Error.
 py::array array_or_fail(const py::handle& given, const char* what, const char* expected) {
   py::array array = py::array::ensure(given);
   if (!array) {

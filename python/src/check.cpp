@@ -101,7 +101,7 @@ py::array ground_forces(const SharedCheck& check) {
   return array;
 }
 
-/// How each facet touches.
+/// The contacts of all facets.
 py::array contacts(const SharedCheck& check) {
   const auto& list = check->result.assessment.equilibrium.contact;
   using State = std::decay_t<decltype(list.front())>;
@@ -163,7 +163,8 @@ py::dict stability(const CheckedStructure& check) {
   return out;
 }
 
-/// Verdict, load ratio, margin, weight factor, modules, seconds; not a number where none is known.
+/// The columns are verdict, load ratio, margin, weight factor, modules and seconds; not a number
+/// where none is known.
 py::tuple row(const CheckedStructure& check) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const verdict::Assessment& found = check.result.assessment;

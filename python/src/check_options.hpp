@@ -6,7 +6,8 @@
 
 namespace holdfast::python {
 
-/// How to check; holdfast.Error for what is not allowed. `memory` is in GB of 2^30 bytes.
+/// Reads the options of a check; raises holdfast.Error for what is not allowed. `memory` is in GB
+/// of 2^30 bytes.
 CheckOptions check_options(const py::handle& threads, const py::handle& memory, bool is_bonded);
 
 int thread_count_of(const py::handle& threads);

@@ -23,7 +23,7 @@ namespace holdfast::python {
 
 namespace py = pybind11;
 
-/// Raised in Python as holdfast.Error.
+/// An error that Python sees as holdfast.Error.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -39,7 +39,7 @@ T take(base::Result<T> result, std::string_view file = {}) {
   return std::move(result).value();
 }
 
-/// The same for what returns nothing but an error.
+/// Raises holdfast.Error if there is an error.
 void take(const std::optional<base::Error>& error, std::string_view file);
 
 /// Robots and reports are never changed once made, so many may share one.
@@ -70,7 +70,7 @@ std::uint64_t integer_of(const py::handle& given, const char* what, std::uint64_
                          std::uint64_t high);
 double number_of(const py::handle& given, const char* what, double low, double high);
 
-/// Any number of 64 bits.
+/// Reads any number of 64 bits.
 std::uint64_t seed_of(const py::handle& given);
 
 /// Cells from an (n, 3) array of integers, or what numpy makes one of. Raises holdfast.Error that
@@ -101,7 +101,7 @@ py::array view(const T* values, std::size_t count, const py::dtype& type, const 
   return array;
 }
 
-/// What the other files add to the module.
+/// The functions of the other files that add to the module.
 void add_structure(py::module_& module);
 void add_check(py::module_& module);
 void add_pickle(py::module_& module);

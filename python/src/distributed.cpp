@@ -14,9 +14,8 @@
 namespace holdfast::python {
 namespace {
 
-/// What happens to a module, or is planned, at a time in seconds, or in rounds: ("kill", 0.1,
-/// cell),
-/// ("cut", 0.1, cell, "+x"), ("plan", 0.2, cell).
+/// An event that happens to a module, or a plan, at a time in seconds, or in rounds: ("kill", 0.1,
+/// cell), ("cut", 0.1, cell, "+x"), ("plan", 0.2, cell).
 struct Event {
   std::string kind;
   double at = 0;
@@ -104,7 +103,7 @@ Course course_of(const SharedStructure& structure, const std::vector<Event>& eve
   return course;
 }
 
-/// Tells how far it is and goes on.
+/// Reports how far the work is and continues it.
 auto going_on(Watch& watch) {
   return [&watch](const sim::SimulationResult& result) {
     watch(result.events, result.rounds);
@@ -112,7 +111,7 @@ auto going_on(Watch& watch) {
   };
 }
 
-/// What disturbs the lines: probabilities, and seconds for jitter.
+/// Adds what disturbs the lines: probabilities, and seconds for jitter.
 void add_noise(sim::LinkModel& link, const py::dict& noise, double ticks) {
   for (const auto& [key, value] : noise) {
     const std::string name = utf8_of(key, "noise");

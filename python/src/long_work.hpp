@@ -42,12 +42,12 @@ class GilReleased {
   PyThreadState* thread_;
 };
 
-/// What long work asks now and then, without the GIL, from the thread that was called: has the user
-/// pressed Ctrl-C? It also tells Python how far the work is. What Python raises is thrown here,
-/// through the work, which is given up.
+/// Lets long work find out now and then, without the GIL, from the thread that was called, whether
+/// the user has pressed Ctrl-C. It also tells Python how far the work is. What Python raises is
+/// thrown here, through the work, which is given up.
 class Watch {
  public:
-  /// `progress` is None or what is called with the numbers of the work; with the GIL.
+  /// The function `progress`, or None, is called with the numbers of the work; with the GIL.
   explicit Watch(py::object progress) : progress_(std::move(progress)) {}
 
   template <class... Number>
@@ -59,7 +59,7 @@ class Watch {
     }
   }
 
-  /// Only whether to go on.
+  /// Asks only whether to go on.
   void ask() {
     const auto now = std::chrono::steady_clock::now();
     if (now - last_asked_ >= kPeriod) {
@@ -68,7 +68,7 @@ class Watch {
     }
   }
 
-  /// At once.
+  /// Calls the progress function at once.
   template <class... Number>
   void tell(Number... numbers) {
     with_gil([&] {
@@ -90,7 +90,7 @@ class Watch {
     });
   }
 
-  /// Python code gives the GIL away now and then, and may not get it back.
+  /// Calls Python code, which gives the GIL away now and then, and may not get it back.
   void call(const py::tuple& numbers) {
     PyObject* const result =
         sleep_when_python_ends([&] { return PyObject_CallObject(progress_.ptr(), numbers.ptr()); });
@@ -115,7 +115,7 @@ auto without_gil(Watch& watch, const Work& work) {
   return work();
 }
 
-/// The same for work that does not say how far it is.
+/// Does work that does not report its progress, without the GIL.
 template <class Work>
 auto without_gil(const Work& work) {
   Watch watch((py::none()));

@@ -6,9 +6,9 @@
 
 #include "common.hpp"
 
-/// What a check found as bytes, for Python's pickle: the numbers as they lie in memory, for the
-/// same version of this package on the same kind of machine. As with all pickles, only those from
-/// where one trusts are to be read.
+/// Writes what a check found as bytes for Python's pickle: the numbers as they lie in memory, for
+/// the same version of this package on the same kind of machine. As with all pickles, only those
+/// from a trusted source are to be read.
 namespace holdfast::python {
 namespace {
 
@@ -88,7 +88,7 @@ class Reader {
     get_bytes(list.data(), list.size() * sizeof(typename List::value_type));
   }
 
-  /// No more than can follow.
+  /// Reads a size and refuses one that is larger than what can follow.
   std::size_t get_size(std::size_t size_each) {
     std::size_t size = 0;
     get_bytes(&size, sizeof size);
@@ -206,7 +206,7 @@ void Reader::get(Value& value) {
   }
 }
 
-/// What has to be the same for bytes to mean the same.
+/// The head, which has to be the same for bytes to mean the same.
 std::string head() {
   return "holdfast " + std::string(version()) + " " + std::to_string(sizeof(CheckResult)) + " ";
 }

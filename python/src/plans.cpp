@@ -13,7 +13,7 @@
 #include "holdfast/trial.hpp"
 #include "long_work.hpp"
 
-/// What may come next: places, steps, orders, moves.
+/// Adds what may come next: places, steps, orders, moves.
 namespace holdfast::python {
 namespace {
 
@@ -97,7 +97,7 @@ std::shared_ptr<JudgedSteps> steps(const SharedStructure& structure, const py::h
   return judged;
 }
 
-/// (steps, 3): release, shift, connect.
+/// The stages as an array (steps, 3): release, shift, connect.
 py::array stages(const JudgedSteps& judged) {
   std::vector<JudgementRow> rows;
   for (const plan::StepJudgement& step : judged.result.judgement.steps) {
@@ -162,7 +162,7 @@ py::array cells_in(const io::OrderReport& report, const auto& elements) {
   return array_of(cells);
 }
 
-/// As they are attached, or detached where the robot is taken apart.
+/// The batches as they are attached, or as they are detached where the robot is taken apart.
 py::list order_batches(const io::OrderReport& report) {
   py::list out;
   for (const plan::Batch& batch : report.result.order.steps) {
@@ -237,7 +237,7 @@ std::shared_ptr<io::MoveReport> move(const Structure& start, const Structure& ta
       without_gil(watch, [&] { return seek_moves(start.document, target.document, request); })));
 }
 
-/// From, to, carrier or None, of every move of every step.
+/// The moves of every step, each as from, to, and carrier or None.
 py::list move_steps(const io::MoveReport& report) {
   const auto triple = [](const base::Cell& cell) { return py::make_tuple(cell.x, cell.y, cell.z); };
   py::list out;

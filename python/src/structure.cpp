@@ -11,7 +11,7 @@
 #include "common.hpp"
 #include "long_work.hpp"
 
-/// Robots: made of arrays, of files, of text; written; looked at.
+/// Makes robots of arrays, files and text, writes them, and gives what they consist of.
 namespace holdfast::python {
 namespace {
 
@@ -81,7 +81,8 @@ void set_modules(io::Document& document, const std::vector<base::Cell>& cells,
   }
 }
 
-/// `head` is holdfast JSON without modules, for all that is said beside them; or empty.
+/// Makes a structure; `head` is holdfast JSON without modules, for all that is said beside them, or
+/// empty.
 SharedStructure make(const py::handle& cells, const py::handle& planned, const py::handle& fixed,
                      const py::handle& head, const Own& own) {
   io::Document document;
@@ -139,8 +140,8 @@ void keep_carried_loads(io::Document& document, const std::vector<base::Cell>& p
                 [&](const model::Payload& payload) { return !there.contains(payload.cell); });
 }
 
-/// The same robot with other planned modules, and no further steps. Those that are planned again
-/// keep their kinds, masses and loads.
+/// The robot with other planned modules and no further steps. Modules that are planned again keep
+/// their kinds, masses and loads.
 SharedStructure with_planned(const Structure& structure, const py::handle& planned) {
   io::Document document = structure.document;
   const auto cells = cells_of(planned, "planned");
@@ -158,7 +159,7 @@ SharedStructure with_planned(const Structure& structure, const py::handle& plann
   return share(without_gil([&] { return make_structure(std::move(document), structure.name); }));
 }
 
-/// The same robot with its planned modules attached; further steps move up.
+/// The robot with its planned modules attached; further steps move up.
 SharedStructure attached(const Structure& structure) {
   io::Document document = structure.document;
   if (!document.steps.empty()) {
@@ -213,7 +214,7 @@ py::array facets(const SharedStructure& structure) {
               py::cast(structure));
 }
 
-/// Where the nodes of modules are, mm.
+/// The places of the modules' nodes, mm.
 py::array_t<double> positions(const Structure& structure) {
   const model::Robot& robot = structure.robot;
   const base::NodePlaces place(robot.lattice(), robot.material().pitch_mm);
@@ -246,7 +247,7 @@ py::dict material(const Structure& structure) {
   return out;
 }
 
-/// From a node through each facet, in the order of directions: vectors of length one.
+/// Unit vectors from a node through each of its facets, in the order of directions.
 py::array_t<double> directions(const Structure& structure) {
   const base::Lattice& lattice = structure.robot.lattice();
   const auto range = base::facet_directions(lattice);

@@ -329,13 +329,15 @@ expect_usage "^holdfast: there is no command 'x'; there are help, check, steps, 
 expect_usage "^holdfast: there is no command 'ordr'; did you mean 'order'" help ordr
 expect_usage "^holdfast check: FILE is required\$" check
 expect_usage "^Try 'holdfast check --help'\.\$" check
-expect_usage "^holdfast check: there is no option '--jsn'; did you mean '--json'\?\$" check a --jsn b
+expect_usage "^holdfast check: there is no option '--jsn'; did you mean '--json'\?\$" \
+  check a --jsn b
 expect_usage "^holdfast check: there is no option '--x'\$" check a --x=1
 expect_usage "^holdfast next: the argument 'b' is not expected\$" next a b
 expect_usage "^holdfast check: --json has no value, expected FILE\$" check a --json
 expect_usage "^holdfast check: --memory: expected a number from 0.01 to 1024, found 0\$" \
   check a --memory 0
-expect_usage "^holdfast check: --threads: expected a number from 0 to 64, found two\$" check a --threads two
+expect_usage "^holdfast check: --threads: expected a number from 0 to 64, found two\$" \
+  check a --threads two
 expect_usage "--link: expected v1, v2, catoms or unit, found 'v3'" simulate a --link v3
 expect_usage "--reach: expected free, line or surface, found 'srface'; did you mean 'surface'" \
   order a --reach srface

@@ -29,8 +29,8 @@ constexpr std::size_t kModulesMin = 3;
 constexpr std::size_t kModulesMax = 11;
 
 /// The robot, on nothing but a floor, as far from the origin as one, two or three bytes of a
-/// coordinate tell, of other lattices than the cubic one as far as their corners can be told; by
-/// even numbers, as rows and layers of some are shifted in turn.
+/// coordinate reach; on other lattices than the cubic one as far as their corners can be sent. It
+/// moves by even numbers, as rows and layers of some lattices are shifted in turn.
 model::RobotSpec moved_away(model::RobotSpec spec, std::uint64_t seed) {
   base::Rng rng(seed ^ 0x3a7U);
   std::array<std::int32_t, 3> away{};
@@ -107,7 +107,7 @@ std::vector<Faces> turns(const base::Lattice& lattice) {
 
 enum class Mistake : std::uint8_t { kTurn, kCross, kSecondAnchor, kAnchor };
 
-/// What is done wrong, and whether the modules can see it.
+/// An assembly with a mistake, and whether the modules can see it.
 class Assembly {
  public:
   Assembly(const model::Robot& robot, std::uint64_t seed, Mistake mistake)

@@ -72,7 +72,7 @@ float host_ratio(const sim::Simulation& simulation, const model::Robot& robot,
   return ratio;
 }
 
-/// The same, asking the module itself first.
+/// The load ratio of a connection as the module itself knows it, or else the host.
 float find_ratio(const sim::Simulation& simulation, const model::Robot& robot,
                  const model::Connection& connection) {
   float ratio = 0;
@@ -106,7 +106,7 @@ model::Limit limit_of(const model::Robot& robot, const verdict::Assessment& asse
   return model::load_ratio(robot.connector(robot.connections()[connection]), force).limit;
 }
 
-/// Does the robot name another limit of the same connection?
+/// Whether the robot names another limit of the same connection.
 bool has_other_limit(const model::Robot& robot, const verdict::Assessment& assessment,
                      const agent::Answer& answer) {
   if (robot.has_default_connectors() || !assessment.worst) {

@@ -17,16 +17,17 @@ struct Comparison {
   agent::Verdict robot = agent::Verdict::kNone;
   double ratio_exact = 0;
   double ratio_robot = 0;
-  /// Over all connections: the largest error of a load ratio over what is allowed.
+  /// The largest error of a load ratio of any connection, as a share of what is allowed.
   double worst_connection = 0;
   int depth = 0;  ///< Of the spanning tree.
   /// The robot names the worst connection that the exact answer has, with another limit.
   bool has_other_limit = false;
-  /// Only one of both says that a gap opens, and none is within 2 % of its limit.
+  /// Whether only the robot, or only the exact answer, says that a gap opens, and none is within 2
+  /// % of its limit.
   bool has_other_gaps = false;
   sim::SimulationResult result;
 
-  /// Decided, and differently.
+  /// Whether the robot decides, and differently.
   bool is_wrong() const;
 
   bool is_undecided() const { return robot == agent::Verdict::kUndecided; }

@@ -53,8 +53,8 @@ model::RobotSpec random_tree(const base::Lattice& lattice, std::uint64_t seed) {
   return spec;
 }
 
-/// Without a loop the stated error is a bound, but for the rounding of what is told, on which the
-/// exact solver has to be; a second fixed module, or a foot beside the fixed one, makes a loop.
+/// The stated error, and the rounding of messages besides, bound the distance to the exact answer
+/// where there is no loop; a second fixed module, or a foot beside the fixed one, makes a loop.
 TEST(ErrorKind, is_a_bound_just_where_balance_alone_gives_the_forces) {
   constexpr agent::Method kMethods[] = {agent::Method::kElimination, agent::Method::kFronts,
                                         agent::Method::kConjugateGradients,
@@ -96,8 +96,8 @@ TEST(ErrorKind, is_a_bound_just_where_balance_alone_gives_the_forces) {
   EXPECT_GT(count, test::campaign(80, 10));
 }
 
-/// Where they say the same, by the same law and as far as promised, there is none; else the report
-/// knows why.
+/// The difference is none where robot and exact solver say the same, by the same law and as far as
+/// promised; else the report knows why.
 TEST(Difference, is_named_wherever_robot_and_exact_solver_answer_otherwise) {
   constexpr std::size_t kFewModules = 6;  // Large ones with loops take long.
   int count = 0;

@@ -42,7 +42,7 @@ TEST(FaultCampaign, a_silent_module_or_link_never_leads_to_a_wrong_safe) {
   EXPECT_GT(undecided_count, test::campaign(300, 8));
 }
 
-/// What is taken off is no longer part of the robot: the answer is that of what is left.
+/// A module that is taken off is no longer part of the robot: the answer is that of what is left.
 TEST(FaultCampaign, a_module_taken_off_gives_the_answer_of_the_rest) {
   model::RobotSpec whole{
       .existing = {

@@ -13,7 +13,7 @@ using wire::PacketKind;
 
 constexpr std::size_t kNumbers = wire::kSequenceCount;
 
-/// Where the checksum of a session starts: docs/wire.md, "Packets".
+/// The start of the checksum of a session: docs/wire.md, "Packets".
 std::uint16_t session(std::uint16_t sender, std::uint16_t receiver) {
   const auto mixed = static_cast<std::uint16_t>(sender ^ std::rotl(receiver, 5));
   return static_cast<std::uint16_t>(mixed ^ (std::popcount(mixed) & 1));
@@ -76,7 +76,7 @@ int FaultyNeighbour::tamper(sim::Time now, std::int32_t module, base::Direction 
   return static_cast<int>(body) + wire::kChecksumBytes;
 }
 
-/// What goes out instead of the payload. A liar's messages leave whole.
+/// The bytes that go out instead of the payload. A liar's messages leave whole.
 FaultyNeighbour::Bytes FaultyNeighbour::change(sim::Time now, Stream& out,
                                                std::span<const std::uint8_t> payload,
                                                std::size_t room) {

@@ -31,7 +31,7 @@ class FaultyNeighbour {
  public:
   FaultyNeighbour(const model::Robot& robot, const FaultyOptions& options);
 
-  /// As sim::Tamper.
+  /// Changes packets as a sim::Tamper.
   int tamper(sim::Time now, std::int32_t module, base::Direction face,
              std::span<std::uint8_t> packet, int size);
 
@@ -47,7 +47,7 @@ class FaultyNeighbour {
     Bytes changed;
   };
 
-  /// What goes out on one face of a module.
+  /// The stream that goes out on one face of a module.
   struct Stream {
     std::uint16_t number = 0;  ///< Of the session, as the module greets.
     Bytes message;             ///< Begun and not yet complete.

@@ -18,7 +18,7 @@ namespace {
 
 constexpr auto kFronts = agent::Method::kFronts;
 
-/// Neither polynomial nor conjugate gradients.
+/// The method is neither the polynomial nor conjugate gradients.
 void expect_exact_method(const test::Comparison& comparison) {
   const agent::Method method = comparison.result.effort.method;
   EXPECT_TRUE(method == kFronts || method == agent::Method::kElimination) << comparison.text();
@@ -39,10 +39,10 @@ TEST(Fronts, random_robots_are_decided_in_few_sweeps) {
   }
 }
 
-/// What else made sweeps many: refinement that came to a halt at the rounding of displacements and
-/// loads of kept facets (3534), a root's matrix that rounding had made negative (6226), more kept
-/// facets than the root had room for (10506), batches of one and two facets (4478, 12982), and open
-/// feet that are freed one after the other (5162).
+/// These robots had many sweeps for other reasons: refinement that came to a halt at the rounding
+/// of displacements and loads of kept facets (3534), a root's matrix that rounding had made
+/// negative (6226), more kept facets than the root had room for (10506), batches of one and two
+/// facets (4478, 12982), and open feet that are freed one after the other (5162).
 TEST(Fronts, robots_that_took_many_sweeps_take_few) {
   for (const std::uint64_t seed : test::campaign({3534U, 4478U, 5162U, 6226U, 10506U, 12982U}, 3)) {
     SCOPED_TRACE(::testing::Message() << "random_robot(" << seed << ")");
@@ -54,8 +54,8 @@ TEST(Fronts, robots_that_took_many_sweeps_take_few) {
   }
 }
 
-/// Of these the exact solver knows two solutions of the paper's law; by one of them a connection
-/// breaks. The one that is found first does not.
+/// The exact solver knows two solutions of the paper's law for each of these robots; in one of them
+/// a connection breaks. In the one that is found first none does.
 TEST(Fronts, no_robot_is_safe_that_another_solution_breaks) {
   for (const std::uint64_t seed : {7373U, 12085U, 31269U}) {
     SCOPED_TRACE(::testing::Message() << "random_robot(" << seed << ")");
@@ -106,8 +106,8 @@ TEST(Fronts, robots_of_every_lattice_on_any_supports_are_decided_by_them_alone) 
   EXPECT_LE(safe_alone, 1);
 }
 
-/// Robots that hang on the weak springs of one foot: from single precision of S other states would
-/// follow, of which none is one that falls, and the exact law holds the robot.
+/// These robots are held by the weak springs of one foot: S in single precision would have other
+/// states, none of which falls, and the exact law holds the robot.
 TEST(Fronts, a_robot_that_hangs_on_weak_springs_is_not_safe) {
   const std::tuple<base::Lattice, std::uint64_t, std::size_t> robots[] = {
       {base::kFaceCentred, 1701, 3},
@@ -180,7 +180,7 @@ TEST(Fronts, a_fixed_block_with_planned_modules_between_others_is_decided) {
   EXPECT_EQ(comparison.result.effort.method, kFronts);
 }
 
-/// Its fronts would be the largest there are, and the polynomial is at its best.
+/// The fronts of a large block would be the largest there are, and the polynomial is at its best.
 TEST(Fronts, a_large_block_is_left_to_the_polynomial) {
   model::RobotSpec block;
   for (std::int32_t i = 0; i < 9 * 9 * 5; ++i) {

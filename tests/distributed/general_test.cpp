@@ -66,7 +66,7 @@ TEST(DistributedGeneral, own_masses_decide_exactly_whether_it_topples_on_a_floor
   }
 }
 
-/// Three cubes upright tip over an edge when gravity leans by more than atan(20 / 60).
+/// Three cubes upright tip over an edge when gravity is turned by more than atan(20 / 60).
 TEST(DistributedGeneral, a_tower_on_a_slope_tips_at_its_edge) {
   const double limit = std::atan2(20, 60);
   for (const double lean : {0.98, 1.02}) {
@@ -79,8 +79,9 @@ TEST(DistributedGeneral, a_tower_on_a_slope_tips_at_its_edge) {
   }
 }
 
-/// Two cubes high and two wide on one foot: the centre of mass is over the foot's edge, and stays
-/// there where gravity leans along it or both ends bear the same. There is nothing to spare.
+/// The centre of mass of two cubes high and two wide is over the edge of their one foot, and stays
+/// there if gravity is turned along the edge or both ends carry the same. There is nothing to
+/// spare.
 TEST(DistributedGeneral, a_mass_over_the_edge_is_not_safe_whatever_else_acts) {
   const model::RobotSpec plain{.existing = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 2}}};
   model::RobotSpec leaning = plain;
@@ -94,8 +95,9 @@ TEST(DistributedGeneral, a_mass_over_the_edge_is_not_safe_whatever_else_acts) {
   }
 }
 
-/// Four discs between two obstacles and a planned one: by the solution on Newton's path the largest
-/// load ratio is 0.950, by another one, which iterations of one sweep do not reach, 1.048.
+/// The robot has four discs between two obstacles and a planned one. The solution on Newton's path
+/// has the largest load ratio 0.950; another one, which iterations of one sweep do not reach,
+/// 1.048.
 TEST(DistributedGeneral, a_robot_that_another_solution_breaks_is_not_safe) {
   model::RobotSpec spec{.existing = {{0, 0, 0}, {0, 0, -1}, {0, 0, -2}, {1, 0, -2}}};
   spec.planned = {{1, 0, 0}};
@@ -110,8 +112,8 @@ TEST(DistributedGeneral, a_robot_that_another_solution_breaks_is_not_safe) {
   EXPECT_EQ(comparison.robot, Verdict::kUndecided) << comparison.text();
 }
 
-/// Nine prisms at a bonded obstacle, of which the largest load ratio is 0.086 by one solution of
-/// the paper's law and 1.16 by another.
+/// The largest load ratio of nine prisms at a bonded obstacle is 0.086 in one solution of the
+/// paper's law and 1.16 in another.
 TEST(DistributedGeneral, a_robot_that_hardly_bears_anything_by_one_solution_is_not_safe_by_it) {
   const auto robot = test::robot_of(test::general_robot(base::kHexagonalPrism, 1147));
   const verdict::Assessment exact = verdict::assess(robot);
@@ -142,7 +144,8 @@ TEST(DistributedGeneral, a_tower_stands_on_every_face_that_gravity_presses_on) {
   }
 }
 
-/// Walls, ceilings, slots and bonded supports; other masses, payloads, gravity that leans.
+/// The robots have walls, ceilings, slots and bonded supports; other masses, payloads, and gravity
+/// that is not straight down.
 TEST(DistributedGeneral, random_robots_are_decided_like_the_exact_answer) {
   int count = 0;
   int undecided_alone = 0;
@@ -173,8 +176,8 @@ struct Counts {
   int undecided = 0;
 };
 
-/// Never anything else, but undecided, which is counted: where the exact solver is, and where a
-/// trial for another solution does not converge.
+/// The robot never says anything else than the exact solver, but `undecided`, which is counted:
+/// where the exact solver does, and where a trial for another solution does not converge.
 void expect_like_exact(const model::RobotSpec& spec, std::uint64_t seed, Counts& counts) {
   const auto robot = model::Robot::create(spec);
   if (!robot) {
@@ -188,7 +191,7 @@ void expect_like_exact(const model::RobotSpec& spec, std::uint64_t seed, Counts&
   EXPECT_LT(comparison.ratio_error(), 1) << comparison.text();
 }
 
-/// On floors and on walls.
+/// Compares random robots on floors and on walls.
 Counts compare_random_robots(const base::Lattice& lattice) {
   Counts counts;
   for (std::uint64_t seed = 0; seed < test::campaign(8U, 4U); ++seed) {
@@ -221,9 +224,9 @@ TEST(DistributedGeneral, random_robots_of_prisms_are_decided_like_the_exact_answ
   EXPECT_LT(8 * counts.undecided, counts.all);
 }
 
-/// Robots that hang on the weak springs of feet that tilt, or of which a foot that is freed slides
-/// away, and a step of Newton's method that has to be very short; and one whose further solution of
-/// the regularised law, which breaks, has 1.9 times the load ratio.
+/// Some of these robots are held by the weak springs of feet that tilt, or a foot that is freed
+/// slides away; a step of Newton's method has to be very short; and one has a further solution of
+/// the regularised law, which breaks, with 1.9 times the load ratio.
 TEST(DistributedGeneral, robots_that_were_undecided_are_decided_like_the_exact_answer) {
   struct Seeds {
     base::Lattice lattice;
@@ -277,9 +280,10 @@ TEST(DistributedGeneral, is_undecided_where_feet_in_other_states_do_not_hold_it)
   }
 }
 
-/// By the paper's law a facet that presses with 6e-6 N, less than a millionth of what else acts on
-/// it, holds 1.9 N across, and a connection breaks; by the exact law it carries 0.55 of what it
-/// can. Without that facet the paper's law has no state here, and the exact law would decide alone.
+/// A facet that presses with 6e-6 N, less than a millionth of what else acts on it, holds 1.9 N
+/// across in the paper's law, and a connection breaks; in the exact law that connection carries
+/// 0.55 of its strength. Without the facet the paper's law has no state here, and the exact law
+/// would decide alone.
 TEST(DistributedGeneral, is_undecided_where_a_facet_that_hardly_presses_decides) {
   model::RobotSpec spec{.existing = {{0, 0, 0}, {0, -1, 0}, {0, 1, 0}, {1, 0, 0}, {-1, -1, 0}}};
   spec.support_z = std::nullopt;
@@ -292,8 +296,8 @@ TEST(DistributedGeneral, is_undecided_where_a_facet_that_hardly_presses_decides)
   EXPECT_EQ(comparison.result.answer.reason, agent::Reason::kAmbiguousFeet);
 }
 
-/// By the law that is asked second a facet is pulled sideways by eleven times what presses it, more
-/// than its friction: forces of both laws are asked.
+/// The law that is asked second pulls a facet sideways by eleven times what presses it, which is
+/// more than its friction: the forces of both laws count.
 TEST(DistributedGeneral, is_undecided_where_a_facet_slips_by_one_of_both_laws) {
   model::RobotSpec spec{.existing = {{0, 0, 0}, {1, 0, 0}, {1, 0, -1}, {1, 0, -2}, {0, 0, -2}}};
   spec.fixed = {{1, 0, 0}};
@@ -526,8 +530,8 @@ TEST(DistributedGeneral, a_gap_beyond_its_limit_is_told_to_all_modules) {
   }
 }
 
-/// Connectors that never break: contact states need their forces all the same. A tower with an arm
-/// on a lean floor, which tips or stands whatever its connections bear.
+/// Contact states need their forces even if connectors never break: a tower with an arm on a tilted
+/// floor tips or stands whatever its connections carry.
 TEST(DistributedGeneral, contact_is_found_however_strong_connections_are) {
   for (const double strength : {1e9, model::ConnectorLaw::kUnlimited}) {
     for (const double lean : {0.98, 1.02}) {
@@ -547,7 +551,7 @@ struct LawCounts {
   int other_limits = 0;
 };
 
-/// Never anything else than the exact answer, which decides.
+/// The robot never says anything else than the exact answer, which decides.
 void expect_lawful(const model::Robot& robot, std::uint64_t seed, LawCounts& counts) {
   const test::Comparison comparison = test::compare(robot, {.seed = seed});
   if (comparison.exact == verdict::Verdict::kUndecided) {
@@ -652,7 +656,7 @@ TEST(DistributedGeneral, a_module_that_comes_back_knows_its_support) {
             Verdict::kUndecided);
 }
 
-/// What the modules' program does not know is refused, and said.
+/// A robot with what the modules' program does not know is refused, with the reason.
 TEST(DistributedGeneral, what_modules_do_not_know_is_refused) {
   model::RobotSpec spec{.existing = {{0, 0, 0}, {1, 0, 0}}};
   spec.lattice = base::kFaceCentred;

@@ -15,8 +15,8 @@ namespace {
 
 using agent::Method;
 
-/// Where nothing that exists can move no force is left on it before planned modules have moved; a
-/// verdict then would be one by contact states of planned feet that nobody has looked up.
+/// No force is left on a robot whose existing modules cannot move before planned ones have moved; a
+/// verdict then would rest on contact states of planned feet that nobody has looked up.
 TEST(Held, planned_modules_bear_what_the_exact_solver_says_whatever_is_fixed) {
   constexpr Method kMethods[] = {Method::kElimination, Method::kPolynomial, Method::kFronts,
                                  Method::kConjugateGradients};

@@ -252,7 +252,7 @@ TEST(Kept, what_leads_nowhere_is_forgotten_before_another_method_is_tried) {
   EXPECT_LT(2 * plan.kept.rounds, 3 * plan.fresh.rounds);
 }
 
-/// Another comes to the cell of a module that was fixed, and is not: the modules cannot know.
+/// Another module comes to the cell of one that was fixed, and is not: the modules cannot know.
 TEST(Kept, no_module_takes_the_cell_of_a_fixed_one) {
   StepsFile file = growing({{0, 0, 0}, {1, 0, 0}}, {}, true);
   file.document.modules.back().is_fixed = true;
@@ -262,8 +262,8 @@ TEST(Kept, no_module_takes_the_cell_of_a_fixed_one) {
   EXPECT_FALSE(simulate_steps(file, {}).has_value());
 }
 
-/// Without either arm alone the robot would tip over; taken one by one from the inner end it would
-/// be in pieces.
+/// The robot would tip over without either arm alone; arms that are taken one by one from the inner
+/// end would leave it in pieces.
 TEST(Kept, a_step_counts_as_a_whole) {
   StepsFile file =
       growing({{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {2, 0, 1}, {-1, 0, 1}, {-2, 0, 1}}, {});
@@ -296,8 +296,8 @@ TEST(Kept, a_step_of_more_than_modules_can_plan_leaves_no_doubt_behind) {
   }
 }
 
-/// One plan closes a loop, which takes a beam more, the other hangs by none: together they have as
-/// many beams as they would hang by, and yet another method is needed.
+/// One plan closes a loop, which takes a beam more; the other is held by none. Together they have
+/// as many beams as would hold both, and yet another method is needed.
 TEST(Kept, a_plan_that_touches_nothing_is_told_apart) {
   const auto robot = model::Robot::create(
       {.existing = {{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, -2, 0}, {0, -3, 0}}});

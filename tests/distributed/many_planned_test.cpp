@@ -44,7 +44,7 @@ TEST(ManyPlanned, random_robots_are_decided_in_few_sweeps_with_fronts) {
   EXPECT_LE(sweeps.back(), 60);
 }
 
-/// Where nothing holds the robot at first (2478, 2690), and the longest fronts (4478, 5382).
+/// Nothing holds the robot at first in 2478 and 2690; 4478 and 5382 have the longest fronts.
 TEST(ManyPlanned, robots_that_took_many_sweeps_take_few) {
   for (const std::uint64_t seed : test::campaign({2478U, 2690U, 4478U, 5382U}, 2)) {
     SCOPED_TRACE(::testing::Message() << "many_planned_robot(" << seed << ")");
@@ -64,8 +64,8 @@ TEST(ManyPlanned, random_robots_are_decided_without_memory_for_fronts) {
   }
 }
 
-/// Its state is one of the exact law's alone, in which a foot that is open must not hold sideways:
-/// held, the largest load ratio is 0.7369 instead of 0.7145.
+/// The robot has a state only under the exact law, in which an open foot must not hold sideways: if
+/// it did, the largest load ratio would be 0.7369 instead of 0.7145.
 TEST(ManyPlanned, a_fixed_robot_lets_go_of_open_feet_under_the_exact_law) {
   const auto comparison =
       test::compare(test::robot_of(test::many_planned_robot(1245)), {.method = Method::kFronts});
@@ -82,7 +82,7 @@ TEST(ManyPlanned, bad_links_change_no_verdict) {
   }
 }
 
-/// Whoever is alive in the end has a verdict, and none is a wrong `safe`.
+/// Every module that is alive in the end has a verdict, and none is a wrong `safe`.
 TEST(ManyPlanned, a_fault_makes_no_wrong_safe) {
   base::Rng rng(7);
   for (std::uint64_t seed = 0; seed < test::campaign(24U); ++seed) {
@@ -109,8 +109,9 @@ void expect_all(const sim::Simulation& simulation, agent::Verdict verdict, agent
   }
 }
 
-/// A fixed tower of 3 with an arm that is planned piece by piece, told and withdrawn in one
-/// module after the other. An arm of n breaks where n^2 times the ratio of one exceeds 1 (statics).
+/// The robot is a fixed tower of 3 with an arm that is planned piece by piece; one module after the
+/// other is told of the pieces and their withdrawal. An arm of n breaks where n^2 times the ratio
+/// of one exceeds 1 (statics).
 TEST(ManyPlanned, plans_come_and_go_beyond_five) {
   model::RobotSpec spec;
   spec.existing = {{0, 0, 0}, {0, 0, 1}, {0, 0, 2}};
@@ -165,7 +166,7 @@ TEST(ManyPlanned, more_than_thirty_are_too_many) {
   expect_all(simulation, agent::Verdict::kUndecided, agent::Reason::kPlannedTooMany);
 }
 
-/// Without its memory a module plans five, and says so.
+/// A module without lent memory plans five, and says so.
 TEST(ManyPlanned, five_are_planned_where_no_memory_is_lent) {
   model::RobotSpec spec;
   spec.existing = {{0, 0, 0}};

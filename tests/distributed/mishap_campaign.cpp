@@ -27,18 +27,19 @@ model::Robot make_robot(const model::RobotSpec& spec) {
   return std::move(robot).value();
 }
 
-/// The robot without its plan: it is told and carried out by what happens.
+/// The robot without its plan, which is announced and carried out as something that happens.
 model::RobotSpec bare_robot(std::uint64_t seed, std::vector<base::Cell>& plans) {
   model::RobotSpec spec = random_robot(seed, 3, kModulesMax);
   plans = std::exchange(spec.planned, {});
   return spec;
 }
 
-/// What happens at one time, and the exact verdicts from then on.
+/// The exact verdicts from a time on at which something happens.
 struct Stage {
   Time at = 0;
   bool is_noticed = true;  ///< By somebody, sooner or later: no link that is cut or mended.
-  /// Is the module's part the one that changes? But for a module alone, which judges at once.
+  /// Whether each module's part is the one that changes; not for a module alone, which judges at
+  /// once.
   std::vector<bool> is_concerned = {};
   std::vector<verdict::Verdict> verdicts = {};
 };
@@ -71,7 +72,7 @@ class MishapRun {
 
   Time round() const { return plain_.verdict_time; }
 
-  /// Of the first round, or behind it, where verdicts are renewed.
+  /// A time in the first round, or after it, when verdicts are renewed.
   Time some_time() {
     const Time from = rng_.below(3) == 0 ? 0 : round() + 20;
     return from + rng_.below(round() + 1);
@@ -83,7 +84,7 @@ class MishapRun {
     return 1 + rng_.below(most);
   }
 
-  /// How long it takes to lose a neighbour of whom nobody wants anything.
+  /// The time that it takes to lose a neighbour from which nothing is wanted.
   Time silence_time() const { return timing_.ping_after + agent::lost_after(timing_); }
 
   void add(Fault::Kind kind, Time at, std::int32_t module,
@@ -91,7 +92,7 @@ class MishapRun {
     options_.faults.push_back({.kind = kind, .at = at, .module = module, .face = face});
   }
 
-  /// How long the waves took in the module where they took longest.
+  /// The time that the waves took in the module where they took longest.
   Time wave_time(const sim::Simulation& simulation) const {
     Time longest = 0;
     for (std::int32_t i = 0; i < simulation.agent_count(); ++i) {
@@ -154,7 +155,8 @@ void MishapRun::kill_root() {
   }
 }
 
-/// What is connected with the rest by few links or many; the links between fail at the same time.
+/// Parts a piece of the robot from the rest: the links between them, few or many, fail at the same
+/// time.
 void MishapRun::part(Fault::Kind away, Fault::Kind back) {
   std::vector<bool> is_in(count_, false);
   is_in[static_cast<std::size_t>(some_module())] = true;
@@ -399,9 +401,9 @@ void MishapRun::judge_end(const sim::Simulation& simulation, const TrueRobot& tr
   }
 }
 
-/// Beside a robot that starts from nothing as this one is in the end; not where a part is left that
-/// a fresh start would tell nobody where it is. What fails, or comes back,
-/// without a word is found when a link has been silent for as long as that takes.
+/// Compares the time with that of a robot that starts from nothing as this one is in the end,
+/// unless a part is left that a fresh start would tell nobody where it is. A silent failure or
+/// return is found when a link has been silent for as long as that takes.
 void MishapRun::judge_speed(const model::Robot& robot, const TrueRobot& truth, Time last_verdict,
                             MishapTally& tally) const {
   constexpr double kFreshStarts = 3;

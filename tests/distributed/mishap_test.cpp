@@ -40,8 +40,8 @@ TEST(Newcomers, of_two_at_once_neither_hears_a_second_join) {
   EXPECT_EQ(tally.faults(), 0);
 }
 
-/// A module at fault keeps the news of a plan to itself, and goes on handing on the old verdict:
-/// those that know of the plan start a round before a link would be lost. Two robots.
+/// A faulty module keeps the news of a plan to itself, and continues to hand on the old verdict:
+/// those that know of the plan start a round before a link would be lost. There are two robots.
 TEST(News, that_a_neighbour_swallows_leave_no_old_safe) {
   MishapTally tally;
   run_mishap(Mishap::kChangedRenewals, 9542, tally);

@@ -37,8 +37,8 @@ TEST(Newton, finds_the_state_of_the_regularised_law) {
   }
 }
 
-/// They have no state under the regularised law. In 32062 feet that let go hold sideways no longer,
-/// which changes the load ratio by 3 %.
+/// The robots have no state under the regularised law. In 32062 feet that let go hold sideways no
+/// longer, which changes the load ratio by 3 %.
 TEST(Newton, decides_by_the_unilateral_law) {
   std::vector<std::uint64_t> seeds{198, 32062, 351, 406, 455, 518, 616, 926};
   seeds.resize(test::campaign(seeds.size(), std::size_t{8}));
@@ -47,7 +47,7 @@ TEST(Newton, decides_by_the_unilateral_law) {
   }
 }
 
-/// Its largest load ratio is 0.964 or 1.154, as a foot presses or not: nobody decides it.
+/// The robot's largest load ratio is 0.964 or 1.154, as a foot presses or not: nobody decides it.
 TEST(Newton, does_not_decide_where_another_solution_breaks) {
   const auto robot = model::Robot::create(test::random_robot(31269));
   ASSERT_TRUE(robot.has_value());

@@ -187,7 +187,8 @@ TEST(SimulatedNext, knows_a_floor_on_which_nothing_stands_yet) {
   EXPECT_EQ(by_cell(next.next.candidates).at({1, 0, 0}).verdict, Verdict::kUndecided);
 }
 
-/// The same of obstacles; none of their cells is a place.
+/// The robot is held by a module that touches nothing; only what comes would touch obstacles, whose
+/// cells are no places.
 TEST(SimulatedNext, knows_obstacles_that_nothing_touches_yet) {
   const model::RobotSpec spec{
       .existing = {{0, 0, 0}, {1, 0, 0}},
@@ -235,8 +236,7 @@ TEST(SimulatedNext, leaves_the_verdict_as_it_is) {
   EXPECT_EQ(plain.agent(0).free_face(base::Direction::kMinusX).verdict, agent::Verdict::kNone);
 }
 
-/// What a module shows is of the robot as it is: a module that comes voids it, and all is judged
-/// anew.
+/// A module shows the robot as it is: a module that comes makes that void, and all is judged anew.
 TEST(SimulatedNext, a_module_that_comes_has_all_faces_judged_anew) {
   const model::RobotSpec spec = held_arm();
   const model::Robot robot = model::Robot::create(spec).value();

@@ -143,7 +143,7 @@ void watch_random_robots(Pairs& pairs) {
   }
 }
 
-/// A module on a beam goes on by a cell.
+/// Watches a module on a beam move on by a cell.
 void watch_step(const model::Robot& robot, Pairs& pairs) {
   using Kind = agent::StepWord::Kind;
   OrderWatch orders(pairs);

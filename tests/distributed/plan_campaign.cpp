@@ -81,7 +81,7 @@ class PlanRun {
   /// A time of the first round.
   sim::Time some_time() { return rng_.below(round_ + 1); }
 
-  /// Late enough for so many rounds to have ended.
+  /// A time at which so many rounds have ended.
   sim::Time after(sim::Time rounds) const {
     const sim::Time pause = options_.link.ticks_per_second > 0 ? 10'000'000 : 2'000;
     return rounds * (4 * round_ + pause);
@@ -109,7 +109,7 @@ void PlanRun::measure_round() {
   round_ = simulation.result().verdict_time;
 }
 
-/// What every module of the simulated robot answers, beside the exact answer for another one.
+/// Compares the answers of the simulated robot's modules with the exact answer for another robot.
 /// `plans`: how many plans and withdrawals its modules may hold in all.
 void PlanRun::judge(const model::RobotSpec& simulated, const model::RobotSpec& end,
                     std::size_t plans) {

@@ -8,8 +8,8 @@
 
 #include "holdfast/model/robot.hpp"
 
-/// Plans that are told, carried out, withdrawn at any time and to any module of random robots: what
-/// every module answers in the end beside the exact answer for the robot as it is then.
+/// Compares what every module answers in the end with the exact answer for the robot as it is then,
+/// when plans are announced, carried out, withdrawn at any time and to any module of random robots.
 namespace holdfast::test {
 
 enum class PlanCase : std::uint8_t {

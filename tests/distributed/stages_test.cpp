@@ -83,7 +83,7 @@ void add_moves(const RobotState& robot, model::Step& step, base::Rng& rng) {
   }
 }
 
-/// `kind` takes turns at what a step does.
+/// Makes a random step; `kind` takes turns at what it does.
 model::Step random_step(const RobotState& robot, std::uint64_t kind, base::Rng& rng) {
   model::Step step;
   const auto pairs = pairs_of(robot);
@@ -111,7 +111,7 @@ model::Step random_step(const RobotState& robot, std::uint64_t kind, base::Rng& 
   return step;
 }
 
-/// Weak enough that some stages break, with a released pair now and then.
+/// A robot that is weak enough for some stages to break, with a released pair now and then.
 RobotState state_of(model::RobotSpec spec, base::Rng& rng) {
   spec.planned.clear();
   const double weakness = 0.05 + 0.05 * static_cast<double>(rng.below(20));
@@ -130,13 +130,14 @@ using RandomSpec = model::RobotSpec (*)(std::uint64_t seed);
 
 model::RobotSpec cubes_on_a_floor(std::uint64_t seed) { return test::random_robot(seed, 3, 24); }
 
-/// Walls, ceilings, steps, bonded or not, masses and payloads, gravity that leans.
+/// Random robots with walls, ceilings and steps, bonded or not, masses and payloads, and gravity
+/// that is not straight down.
 template <int Index>
 model::RobotSpec held_anywhere(std::uint64_t seed) {
   return test::general_robot(test::kLattices[Index], seed);
 }
 
-/// On a level floor, half of them with masses and payloads of their own.
+/// Random robots on a level floor, half of them without masses and payloads of their own.
 template <int Index>
 model::RobotSpec on_a_floor(std::uint64_t seed) {
   model::RobotSpec spec = test::general_robot(test::kLattices[Index], seed);
@@ -154,22 +155,22 @@ model::RobotSpec on_a_floor(std::uint64_t seed) {
   return spec;
 }
 
-/// Of either, kinds of modules whose connectors have laws of their own.
+/// Random robots on floors or held anywhere, with kinds whose connectors have laws of their own.
 template <int Index>
 model::RobotSpec with_laws(std::uint64_t seed) {
   const auto spec = seed % 3 == 0 ? on_a_floor<Index>(seed) : held_anywhere<Index>(seed);
   return test::with_laws(spec, seed);
 }
 
-/// Of either, supports that slip.
+/// Random robots on floors or held anywhere, whose supports slip.
 template <int Index>
 model::RobotSpec with_friction(std::uint64_t seed) {
   const auto spec = seed % 2 == 0 ? on_a_floor<Index>(seed) : held_anywhere<Index>(seed);
   return test::with_friction(spec, seed);
 }
 
-/// With strengths by which the largest load ratio of a step's stages, if it has any, is within 1 %
-/// of 1.
+/// The robot with strengths that bring the largest load ratio of a step's stages, if it has any,
+/// within 1 % of 1.
 RobotState near_limit(const RobotState& robot, const model::Step& step,
                       const plan::Transition& transition, std::uint64_t seed) {
   double largest = 0;
@@ -202,7 +203,7 @@ bool is_near(double ratio, double expected) {
   return std::abs(ratio - expected) <= 0.01 + 0.01 * std::abs(expected);
 }
 
-/// Of a step on a robot.
+/// A stage of a step on a robot.
 struct StageOfStep {
   const RobotState& robot;
   const model::Step& step;
@@ -210,7 +211,7 @@ struct StageOfStep {
   plan::Stage stage;
 };
 
-/// The largest load ratios of a stage by the solutions of the paper's law, of which it may have
+/// The largest load ratios of a stage in the two solutions of the paper's law, which may have
 /// several, that load it least and most.
 verdict::LoadRange range_of_solutions(const StageOfStep& of) {
   verdict::LoadRange range = {.low = -1e300, .high = -1e300};
@@ -227,7 +228,8 @@ verdict::LoadRange range_of_solutions(const StageOfStep& of) {
   return range;
 }
 
-/// Never `safe` but where the exact solver says so. Without `of` other solutions do not count.
+/// The robot never says `safe` but where the exact solver does. Other solutions count only with
+/// `of`.
 void compare_stage(const agent::Answer& answer, const base::Result<plan::StageJudgement>& exact,
                    Tally& tally, const StageOfStep* of = nullptr) {
   ++tally.stages;
@@ -265,7 +267,7 @@ void compare_stage(const agent::Answer& answer, const base::Result<plan::StageJu
   }
 }
 
-/// Of the first random step that can be done, if any of them can.
+/// Compares the stages of the first random step that can be done, if any of them can.
 void compare(RandomSpec random_spec, std::uint64_t seed, Tally& tally) {
   SCOPED_TRACE(::testing::Message() << "seed " << seed);
   base::Rng rng(seed);
@@ -302,7 +304,7 @@ void compare(RandomSpec random_spec, std::uint64_t seed, Tally& tally) {
   }
 }
 
-/// Of stages one in `decided` may be undecided, and `more` besides.
+/// Compares many steps; one in `decided` of their stages, and `more` besides, may be undecided.
 void compare_many(RandomSpec random_spec, std::uint64_t count, int decided = 50, int more = 0) {
   const char* const wanted = std::getenv("HOLDFAST_STAGE_CASES");
   count = wanted != nullptr ? std::strtoull(wanted, nullptr, 10) : count;
@@ -386,7 +388,8 @@ TEST(Stages, of_prisms_that_may_slip_are_judged_as_by_the_exact_solver) {
   compare_many(with_friction<3>, test::campaign(6U), 6, 1);
 }
 
-/// Of a foot of two, a column of two on it, and an arm of one, told these words; all modules agree.
+/// The answer of a foot of two, a column of two on it, and an arm of one that are told these words;
+/// all modules agree.
 agent::Answer told(std::vector<agent::StepWord> words, agent::Stage stage = agent::Stage::kNone) {
   const auto robot = model::Robot::create(
       {.existing = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {0, 0, 2}, {1, 0, 2}}, .fixed = {{1, 0, 0}}});
@@ -397,7 +400,7 @@ agent::Answer told(std::vector<agent::StepWord> words, agent::Stage stage = agen
   return simulation.result().answer;
 }
 
-/// From the top of the column over the arm, both of which carry it.
+/// The arm moves from beside the top of the column onto it, and the top carries it.
 std::vector<agent::StepWord> move_of_arm() {
   return {{.kind = Kind::kMove, .face = 1, .first = 4, .second = 1, .cell = {1, 0, 2}},
           {.kind = Kind::kCarry, .mask = 31, .cell = {0, 0, 2}}};
@@ -447,7 +450,7 @@ TEST(Stages, what_hangs_on_a_carrier_loads_it_by_its_lever) {
   EXPECT_NEAR(stages.answer(agent::Stage::kShift).load_ratio_max, weight / 11.98, 0.001);
 }
 
-/// The same with a module of 0.2 kg that carries 1 N: both go with it.
+/// A module of 0.2 kg that carries 1 N loads its carrier by its weight and this force.
 TEST(Stages, what_hangs_on_a_carrier_loads_it_by_what_it_weighs_and_carries) {
   const double load = 0.2 * 9.81 + 1;
   model::RobotSpec spec{.existing = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {0, 0, 2}, {1, 0, 2}},
@@ -463,7 +466,7 @@ TEST(Stages, what_hangs_on_a_carrier_loads_it_by_what_it_weighs_and_carries) {
   EXPECT_NEAR(judged.value().stages[1].load_ratio_max, load / 11.98, 0.001);
 }
 
-/// The same with an arm whose latch shears off: beside its carrier W goes across the facet.
+/// One of the two latches shears off: beside its carrier the arm's weight W acts across the facet.
 TEST(Stages, what_hangs_on_a_carrier_is_held_by_the_weaker_connector_of_the_two) {
   model::RobotSpec spec{.existing = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {0, 0, 2}, {1, 0, 2}},
                         .fixed = {{0, 0, 0}}};
@@ -493,7 +496,7 @@ TEST(Stages, what_hangs_on_a_carrier_is_held_by_the_weaker_connector_of_the_two)
   }
 }
 
-/// A battery on the foot's edge: the robot stands with it, and topples once it hangs beside it.
+/// A robot stands with a battery on top of its column, and topples once the battery is beside it.
 TEST(Stages, a_robot_topples_by_the_mass_of_what_it_carries) {
   model::RobotSpec spec{.existing = {{0, 0, 0}, {0, 0, 1}, {0, 0, 2}}};
   const model::Step step{.moves = {{.from = {0, 0, 2}, .to = {1, 0, 1}}}};

@@ -56,7 +56,7 @@ class Storm {
     return plain_.back();
   }
 
-  /// Of the first round, or behind it, where verdicts are renewed.
+  /// A time in the first round, or after it, when verdicts are renewed.
   sim::Time some_time() {
     const sim::Time from = rng_.below(3) == 0 ? 0 : round_ + 20;
     return from + rng_.below(round_ + 1);
@@ -95,7 +95,7 @@ class Storm {
     is_touched_[static_cast<std::size_t>(fault.module)] = true;
   }
 
-  /// To a module that nothing happens to: what it is told of is not lost.
+  /// Plans a cell at a module that nothing happens to, so that the plan is not lost.
   void plan(const base::Cell& cell) {
     const std::int32_t module = some_module();
     if (is_touched_[static_cast<std::size_t>(module)]) {

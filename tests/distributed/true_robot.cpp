@@ -103,8 +103,9 @@ std::vector<std::int32_t> TrueRobot::parts(bool by_word) const {
   return parts;
 }
 
-/// A plan counts in the part of the module that knows of it. What hangs in the air stands if the
-/// plan makes it stand: its verdict is that of the robot with the planned modules.
+/// The verdict on a part. A plan counts in the part of the module that knows of it. A part in the
+/// air stands if the plan makes it stand: its verdict is that of the robot with the planned
+/// modules.
 Verdict TrueRobot::verdict_of(const std::vector<std::int32_t>& parts, std::int32_t part) const {
   model::RobotSpec spec = spec_;
   spec.existing.clear();

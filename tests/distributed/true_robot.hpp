@@ -10,12 +10,12 @@
 #include "holdfast/sim/trace.hpp"
 #include "holdfast/verdict/assessment.hpp"
 
-/// What is true of a simulated robot while modules come and go and plans are told: the exact
+/// Knows what is true of a simulated robot while modules come and go and plans are told: the exact
 /// verdict beside what modules say.
 namespace holdfast::test {
 
-/// The robot as somebody sees it who looks at it: which modules are attached and connected, what is
-/// planned. A module that is silent, or whose link is cut, still carries and weighs.
+/// The robot as an observer sees it: which modules are attached and connected, what is planned. A
+/// module that is silent, or whose link is cut, still carries and weighs.
 class TrueRobot {
  public:
   /// All modules that are ever there; the planned ones are told of by announcements.
@@ -30,19 +30,19 @@ class TrueRobot {
     return modules_[at(module)].is_attached && !modules_[at(module)].is_silent;
   }
 
-  /// Is the connection at a face of a module opened?
+  /// Whether the connection at a face of a module is opened.
   bool is_open(std::int32_t module, base::Direction face) const {
     return ((modules_[at(module)].open >> static_cast<unsigned>(base::index(face))) & 1U) != 0;
   }
 
-  /// For each module the part of the robot that it is connected with, by the lowest index in it; -1
-  /// if it is not attached. `by_word`: over living modules and links that carry.
+  /// The part of the robot that each module is connected with, by the lowest index in it; -1 if the
+  /// module is not attached. `by_word`: over living modules and links that carry.
   std::vector<std::int32_t> parts(bool by_word) const;
 
-  /// For each module the exact verdict of its part; kUndecided if it is not attached.
+  /// The exact verdict of each module's part; kUndecided if the module is not attached.
   std::vector<verdict::Verdict> verdicts() const;
 
-  /// Is no module silent, no link cut, nothing apart?
+  /// Whether no module is silent, no link cut, nothing apart.
   bool is_whole() const;
 
   /// Faults and announcements that make a fresh robot what this one is.
@@ -74,7 +74,7 @@ class TrueRobot {
   std::vector<Plan> plans_;
 };
 
-/// From when to when each module shows `safe`.
+/// Records from when to when each module shows `safe`.
 class SafeTimes : public sim::TraceSink {
  public:
   struct Stretch {
@@ -88,8 +88,8 @@ class SafeTimes : public sim::TraceSink {
 
   const std::vector<Stretch>& stretches() const { return stretches_; }
 
-  /// When anybody has last come to another verdict; but for those that hear no module that knows
-  /// its cell, and wait for one as long as docs/distributed.md says.
+  /// The time of the last change to another verdict. It does not count modules that hear no module
+  /// that knows its cell, and wait for one as long as docs/distributed.md says.
   sim::Time last_verdict() const { return last_verdict_; }
 
  private:

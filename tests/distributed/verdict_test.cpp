@@ -38,7 +38,7 @@ TEST(Distributed, every_scenario_is_decided_like_the_exact_answer) {
   }
 }
 
-/// On bush_tips_a and crane_tips_a Eq. (14) diverges; the robot notices and goes on with blocks.
+/// Eq. (14) diverges on bush_tips_a and crane_tips_a; the robot notices and goes on with blocks.
 TEST(Distributed, the_published_method_and_its_safer_form_come_to_the_same_answer) {
   for (const char* name : test::campaign({"crane_tips_a", "bush_tips_a", "arm_tips_a"})) {
     SCOPED_TRACE(name);
@@ -89,8 +89,8 @@ TEST(Distributed, a_planned_module_between_others_costs_some_steps_more_and_no_o
   EXPECT_LT(with.result.effort.iterations, 4 * without.result.effort.iterations);
 }
 
-/// Where such modules join parts that bend freely and contact changes on the way, a step that is
-/// too long once changed contact states for nothing: these five went to conjugate gradients.
+/// A step that was too long once changed contact states for nothing, where such modules join parts
+/// that bend freely and contact changes on the way: these five went to conjugate gradients.
 TEST(Distributed, planned_modules_between_others_let_no_step_go_too_far) {
   for (const std::uint64_t seed : {3U, 32U, 46U, 48U, 59U}) {
     SCOPED_TRACE(::testing::Message() << "random_robot(" << seed << ")");
@@ -117,7 +117,7 @@ model::RobotSpec slender_frame(std::int32_t width, std::int32_t height) {
   return spec;
 }
 
-/// Fixed at one end; too many loops for elimination.
+/// A cantilever, fixed at one end, with too many loops for elimination.
 model::RobotSpec thick_cantilever(std::int32_t length) {
   model::RobotSpec spec;
   for (std::int32_t x = 0; x < length; ++x) {
@@ -169,7 +169,7 @@ TEST(Distributed, loss_duplication_reordering_and_bit_errors_change_no_verdict) 
   }
 }
 
-/// Another seed is another timing, another tree, another root.
+/// Another seed gives another timing, another tree, another root.
 TEST(Distributed, the_verdict_does_not_depend_on_the_seed_or_the_link) {
   const auto robot = model::Robot::create(test::random_robot(7));
   ASSERT_TRUE(robot);

@@ -15,7 +15,7 @@ using agent::Verdict;
 using sim::Fault;
 using sim::Time;
 
-/// When did the last module stop showing `safe`?
+/// Records when the last module stops showing `safe`.
 class SafeLog : public sim::TraceSink {
  public:
   SafeLog(std::size_t count, Time break_at) : break_at_(break_at), is_safe_(count, false) {}
@@ -78,7 +78,7 @@ void add_arm(model::RobotSpec& spec, base::Rng& rng) {
   }
 }
 
-/// ping_after + lost_after + 3 W of the module whose waves took longest.
+/// The stated time ping_after + lost_after + 3 W of the module whose waves took longest.
 Time stated_time(const sim::Simulation& simulation, const sim::LinkModel& link) {
   const agent::LinkTiming timing = sim::link_timing(link);
   const Time fixed = timing.ping_after + agent::lost_after(timing);

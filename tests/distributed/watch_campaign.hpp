@@ -9,8 +9,8 @@
 #include "faulty_neighbour.hpp"
 #include "holdfast/sim/simulation.hpp"
 
-/// What becomes of verdicts and rounds when a module or a link fails without a word, or a module
-/// goes on to speak without sense.
+/// Measures what becomes of verdicts and rounds when a module or a link fails without a word, or a
+/// module goes on to speak without sense.
 namespace holdfast::test {
 
 /// A robot that is safe as it stands and not with what is planned.
@@ -32,7 +32,7 @@ struct BreakOutcome {
   sim::Time time_bound = 0;  ///< That docs/distributed.md states for it.
 };
 
-/// Long after the verdict something breaks, and a second later a module is told of the plan. None:
+/// Breaks something long after the verdict, and tells a module of the plan a second later. None if
 /// that module is dead by then, so that nobody knows of the plan.
 std::optional<BreakOutcome> break_and_plan(const EndangeredRobot& robot, Break kind,
                                            const sim::LinkModel& link, std::uint64_t seed);
@@ -47,7 +47,7 @@ struct FaultyOutcome {
   sim::Time verdict_time = 0;
 };
 
-/// `watch_for`: see sim::SimulationOptions.
+/// Runs a robot with a faulty neighbour; `watch_for` is that of sim::SimulationOptions.
 FaultyOutcome run_faulty(const model::Robot& robot, const FaultyOptions& faulty,
                          const sim::LinkModel& link, sim::Time watch_for = 0);
 

@@ -10,7 +10,7 @@
 namespace holdfast::test {
 namespace {
 
-/// The robot was safe, something breaks, and what is planned is not safe. Whoever goes on to show
+/// The robot was safe, something breaks, and what is planned is not safe. A module that still shows
 /// `safe` invites somebody to attach it.
 TEST(Watch, no_module_keeps_an_old_safe_longer_than_stated) {
   int count = 0;
@@ -32,8 +32,8 @@ TEST(Watch, no_module_keeps_an_old_safe_longer_than_stated) {
   EXPECT_GT(count, campaign(20));
 }
 
-/// A post whose lower half hangs right after the verdict, its link alive: what stands on it cannot
-/// know, but hears nothing either.
+/// A module of a post hangs after the verdict, while its links are alive: the modules above it
+/// cannot know that, but hear nothing either.
 TEST(Watch, a_module_that_hangs_after_the_verdict_makes_all_others_undecided) {
   model::RobotSpec spec;
   for (int z = 0; z < 8; ++z) {

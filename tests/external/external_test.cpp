@@ -72,7 +72,7 @@ void add_stud(Structure& structure, std::int32_t a, std::int32_t b, const Brick&
   structure.joints.push_back(joint);
 }
 
-/// Brick `a` pressed by brick `b`, which lies in direction `step` of this stud.
+/// Adds a joint where brick `b`, which lies in direction `step` of this stud, presses brick `a`.
 void add_side(Structure& structure, std::int32_t a, std::int32_t b, const Vector3& centre,
               const std::array<int, 2>& step) {
   const double x = step[0];
@@ -86,7 +86,8 @@ void add_side(Structure& structure, std::int32_t a, std::int32_t b, const Vector
        .carries = kCarriesAxial});
 }
 
-/// `have_sides`: bricks that touch side by side press each other.
+/// Makes a structure of bricks, which press each other where they touch side by side if
+/// `have_sides`.
 Structure structure_of_bricks(const std::vector<Brick>& bricks, bool have_sides = true) {
   Structure structure = {.length_mm = kUnit};
   std::map<std::array<int, 3>, std::int32_t> at;

@@ -104,7 +104,7 @@ std::string stem_of(const ::testing::TestParamInfo<std::string>& path) {
 INSTANTIATE_TEST_SUITE_P(Firmware, EveryScenario,
                          ::testing::ValuesIn(paths_in(HOLDFAST_SCENARIO_DIR)), stem_of);
 
-/// Those with the most to do at one module.
+/// The scenarios with the most to do at one module.
 INSTANTIATE_TEST_SUITE_P(HardForFirmware, EveryScenario,
                          ::testing::ValuesIn(paths_in(HOLDFAST_HARD_DIR)), stem_of);
 
@@ -133,7 +133,7 @@ model::Robot looped(const std::string& name) {
   return std::move(robot).value();
 }
 
-/// What elimination cannot hold. All twenty: firmware_bench.
+/// Elimination cannot hold these robots. All twenty: firmware_bench.
 TEST(Firmware, decides_robots_with_many_loops) {
   for (const char* name :
        {"block_2x2x2", "middle_planned", "row_planned", "square_planned", "wall_3x1x3"}) {
@@ -249,9 +249,9 @@ TEST(FirmwareFaults, a_module_without_power_never_makes_a_wrong_safe) {
   break_robots(Fault::Kind::kKill, 1);
 }
 
-/// docs/distributed.md, Watching: on lines of version 2 after 15 s and three times what the waves
-/// take, a quarter of a second here. The arm's middle dies long after the verdict; what sticks out
-/// hears no order any more.
+/// The limit is that of docs/distributed.md, Watching: on lines of version 2, 15 s and three times
+/// what the waves take, a quarter of a second here. The arm's middle dies long after the verdict;
+/// modules behind it hear no order any more.
 TEST(FirmwareFaults, nobody_keeps_an_old_verdict) {
   const Structure structure = load("arm_breaks_a");
   const auto& modules = structure.robot.modules();

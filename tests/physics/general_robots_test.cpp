@@ -100,8 +100,8 @@ TEST(RobotsBetweenWalls, have_the_same_answer_when_their_pressure_is_rounding) {
   }
 }
 
-/// By the paper's law the weak springs of open facets pull, of tilted ones (305) bend back; then
-/// the exact law is asked, too.
+/// The weak springs of open facets pull in the paper's law, those of tilted ones (305) bend back;
+/// then the exact law is asked, too.
 TEST(RobotsWithOpenFacets, are_judged_by_both_laws) {
   for (const std::uint64_t seed : {std::uint64_t{268}, std::uint64_t{587}, std::uint64_t{305}}) {
     SCOPED_TRACE(::testing::Message() << "general_robot " << seed);
@@ -122,8 +122,8 @@ verdict::Verdict verdict_of(std::vector<base::Cell> modules, std::vector<base::C
   return verdict::assess(robot.value()).verdict;
 }
 
-/// Newton's method for the paper's law settles on neither, and the exact law holds them. All their
-/// states were tried by a program of its own, tools/contact_states.py (docs/supports.md).
+/// Newton's method for the paper's law settles on neither robot, and the exact law holds them. All
+/// their states were tried by a program of its own, tools/contact_states.py (docs/supports.md).
 TEST(RobotsOnWalls, are_not_safe_where_the_papers_law_lets_them_fall) {
   using verdict::Verdict;
   // A foot and a wall beside the middle one: one set of states is consistent, and falls.

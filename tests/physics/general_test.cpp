@@ -58,7 +58,8 @@ std::map<Ends, verdict::ConnectionResult> loads_of(const model::Robot& robot,
   return loads;
 }
 
-/// Within 1e-6 of the structure's largest, or of what is rounding in every structure.
+/// The loads agree within 1e-6 of the structure's largest, or of what is rounding in every
+/// structure.
 void expect_same_loads(const Json& expected, const model::Robot& robot,
                        const verdict::Assessment& assessment) {
   const auto found = loads_of(robot, assessment);

@@ -18,7 +18,7 @@
 namespace holdfast {
 namespace {
 
-/// Of the bracket: the elastic factor has the solver's error, and counts from below.
+/// The bracket's tolerance: the elastic factor has the solver's error, and counts from below.
 constexpr double kTolerance = 1e-6;
 
 /// The factor up to which no connection breaks; none where none is pulled apart.

@@ -19,7 +19,7 @@ namespace {
 using verdict::Assessment;
 using verdict::Verdict;
 
-/// What is promised of every load ratio, as a share of the largest, compressed ones included, or
+/// The promised error of every load ratio, as a share of the largest, compressed ones included, or
 /// of 1.
 constexpr double kPromised = 1e-4;
 

@@ -67,7 +67,8 @@ TEST(Proof, proves_every_scenario_that_stands) {
   }
 }
 
-/// Also where displacements in double have no digits of the loads left.
+/// The shown ratio lies in the range even where displacements in double have no digits of the
+/// loads.
 TEST(Proof, shows_a_load_ratio_inside_its_range) {
   for (const auto& file : std::filesystem::directory_iterator(HOLDFAST_NEAR_LIMIT_DIR)) {
     SCOPED_TRACE(file.path().filename().string());
@@ -80,7 +81,7 @@ TEST(Proof, shows_a_load_ratio_inside_its_range) {
   }
 }
 
-/// Scaled so that the ratio is 1 + off, robots of all kinds and sizes are decided.
+/// Robots of all kinds and sizes, scaled so that the ratio is 1 + off, are decided.
 TEST(Proof, decides_robots_within_1e_9_of_the_limit) {
   int decided = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {

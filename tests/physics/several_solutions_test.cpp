@@ -18,7 +18,8 @@
 namespace holdfast {
 namespace {
 
-/// So stiff that bending leaves the centre of mass where it is; loads are the same to the last bit.
+/// Makes a robot so stiff that bending leaves the centre of mass where it is; loads are the same to
+/// the last bit.
 model::RobotSpec stiff(model::RobotSpec spec) {
   spec.material.elastic_modulus_mpa *= 1 << 20;
   return spec;
@@ -33,8 +34,8 @@ model::Robot make_robot(const model::RobotSpec& spec) {
   return std::move(robot).value();
 }
 
-/// A tower whose foot's corner is so near to tilting that multigrid, at the error that it had while
-/// it sought contact states, saw it tilt in some of the eight ways and not in others: two
+/// The foot's corner of this tower is so near to tilting that multigrid, with the error that it had
+/// while it sought contact states, saw it tilt in some of the eight ways and not in others: two
 /// solutions, with 0.1196 and 0.0707 on one connection.
 model::RobotSpec two_paths() {
   const auto structure = load_file(HOLDFAST_TWO_PATHS_FILE);

@@ -29,7 +29,7 @@ class Frames {
  public:
   explicit Frames(int count) : k_(Matrix::Zero(6 * count, 6 * count)), d_(k_) {}
 
-  /// q lies at `towards` from p.
+  /// Connects p with q, which lies at `towards` from it.
   void connect(int p, int q, const Vector3& towards,
                const mechanics::BeamSection<double>& section) {
     const auto beam = mechanics::beam_stiffness(section);

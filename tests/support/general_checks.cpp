@@ -26,8 +26,8 @@ double largest(const std::vector<Vec6<double>>& vectors) {
   return size;
 }
 
-/// What loads and supports leave of the robot as a whole, about the origin, beyond 1e-6 of the
-/// forces; of moments 100 times that, as arms are some 100 mm long.
+/// The imbalance of loads and supports of the robot as a whole, about the origin, beyond 1e-6 of
+/// the forces; for moments 100 times that, as arms are some 100 mm long.
 std::string imbalance(const model::Robot& robot, const Assessment& assessment) {
   const std::vector<Vec6<double>> forces = solver::ground_forces(robot, assessment.equilibrium);
   Vec6<double> sum{};
@@ -51,7 +51,7 @@ std::string imbalance(const model::Robot& robot, const Assessment& assessment) {
   return {};
 }
 
-/// The same law in all directions, and one that knows no axes.
+/// Gives all directions one law, which knows no axes.
 void take_round_law(model::RobotSpec& spec) {
   model::ModuleKind kind = model::default_kind(spec.material, spec.lattice);
   std::fill(kind.connectors.begin(), kind.connectors.end(),

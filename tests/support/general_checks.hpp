@@ -7,12 +7,13 @@
 #include "general_robot.hpp"
 #include "holdfast/verdict/assessment.hpp"
 
-/// What must hold of the answer to any robot, for tests on some and campaigns on many of them.
+/// Checks what must hold of the answer to any robot, for tests on some and campaigns on many of
+/// them.
 namespace holdfast::test {
 
 /// One check of one robot.
 struct Checked {
-  /// False: the property says nothing of this robot, for instance as there are no loads to compare.
+  /// Whether the property says something of this robot; not, for instance, if there are no loads.
   bool is_compared = false;
   std::string fault = {};  ///< What is wrong; empty if nothing is.
 };
@@ -20,7 +21,8 @@ struct Checked {
 /// Whether the answer comes with loads that mean something.
 bool has_loads(const verdict::Assessment& assessment);
 
-/// There is a reason, nothing is safe by one of two answers only, and supports and loads balance.
+/// Checks that there is a reason, that nothing is safe by one of two answers only, and that
+/// supports and loads balance.
 Checked check_answer(const model::Robot& robot, const verdict::Assessment& assessment);
 
 /// Loads and strengths doubled double the answer, to the last bit: doubling is exact in binary.

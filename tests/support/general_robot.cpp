@@ -362,7 +362,7 @@ std::vector<Symmetry> symmetries(const base::Lattice& lattice) {
 
 namespace {
 
-/// Where a direction goes.
+/// The direction to which a symmetry turns a direction.
 Direction turned(const base::Lattice& lattice, const Symmetry& symmetry, Direction direction) {
   const Cell image = symmetry(lattice, base::neighbour(lattice, {0, 0, 0}, direction));
   for (const Direction other : base::directions(lattice)) {

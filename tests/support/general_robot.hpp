@@ -22,14 +22,14 @@ inline constexpr std::array<base::Lattice, 4> kLattices = {base::kCubic, base::k
 /// can be turned.
 model::RobotSpec general_robot(const base::Lattice& lattice, std::uint64_t seed);
 
-/// Which of a robot's existing modules are fixed.
+/// The choice of a robot's existing modules that are fixed.
 enum class Fixed : std::uint8_t { kAll, kAllButOne, kSome, kFirst };
 inline constexpr std::array<Fixed, 4> kFixed = {Fixed::kAll, Fixed::kAllButOne, Fixed::kSome,
                                                 Fixed::kFirst};
 
 /// A robot of 2 to 7 modules on a floor, some of them fixed, and 2 to 7 planned ones, which may
 /// stand on the floor themselves; grown at random, the same for a seed everywhere. Every second one
-/// has a pitch of 10 mm, of which beams are stiff in bending, so that feet tilt.
+/// has a pitch of 10 mm, whose beams are stiff in bending, so that feet tilt.
 model::RobotSpec held_robot(const base::Lattice& lattice, std::uint64_t seed, Fixed fixed);
 
 /// The robot with its last `count` modules planned, as far as one that is not fixed and two more

@@ -9,7 +9,7 @@
 /// General robots made hard to answer.
 namespace holdfast::test {
 
-/// What is hard about a robot.
+/// The kinds of robots that are hard to answer.
 enum class Hardness : std::uint8_t {
   kPoints,      ///< Feet are points.
   kOneContact,  ///< One facet alone touches something.
@@ -24,7 +24,7 @@ enum class Hardness : std::uint8_t {
 
 inline constexpr std::uint64_t kHardnessCount = 9;
 
-/// "points", "one contact", "slots", ...
+/// Returns "points", "one contact", "slots" and so on.
 const char* name(Hardness hardness);
 
 /// The seeds take turns.

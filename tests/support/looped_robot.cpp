@@ -48,7 +48,7 @@ Cells frame(const Cell& size) {
   });
 }
 
-/// Two rails along x with a rung in every second place.
+/// A ladder: two rails along x with a rung in every second place.
 Cells ladder(std::int32_t length) {
   return cells({length, 3, 1}, [](const Cell& c) { return c.y != 1 || c.x % 2 == 0; });
 }

@@ -41,7 +41,7 @@ class Planner {
   }
 
  private:
-  /// Beside one of the modules from `first` on.
+  /// A free cell beside one of the modules from `first` on.
   Cell free_cell(std::size_t first) {
     for (;;) {
       const Cell beside = cells_[first + rng_.below(cells_.size() - first)];

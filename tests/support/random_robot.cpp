@@ -14,7 +14,7 @@ using base::Cell;
 
 class Builder {
  public:
-  /// Of `count_min` to `count_max` modules.
+  /// Builds a robot of `count_min` to `count_max` modules.
   Builder(std::uint64_t seed, std::size_t count_min, std::size_t count_max)
       : rng_(seed), count_max_(count_min + rng_.below(count_max - count_min + 1)) {}
 
@@ -155,7 +155,7 @@ class Builder {
     }
   }
 
-  /// Two posts with rungs, here and there a spike, until there is no more room.
+  /// Adds two posts with rungs and here and there a spike, until there is no more room.
   void ladder() {
     const std::int32_t step = 1 + number(8);
     for (std::int32_t z = 1; cells_.size() < room_; ++z) {

@@ -14,9 +14,9 @@ namespace holdfast::test {
 /// arms that overhang, and feet with gaps under a common deck. Up to four planned modules.
 model::RobotSpec random_robot(std::uint64_t seed);
 
-/// The same with `count_min` to `count_max` existing modules, and two kinds more: spirals and
-/// ladders on a foot of 3 x 3. The first module of every fifth is fixed, as most that are large and
-/// grown freely topple.
+/// Returns a random robot with `count_min` to `count_max` existing modules, built in two more ways:
+/// spirals and ladders on a foot of 3 x 3. The first module of every fifth is fixed, as most large
+/// and freely grown robots topple.
 model::RobotSpec random_robot(std::uint64_t seed, std::size_t count_min, std::size_t count_max);
 
 }  // namespace holdfast::test

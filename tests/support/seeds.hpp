@@ -24,7 +24,8 @@ inline constexpr bool kIsShort = true;
 inline constexpr bool kIsShort = false;
 #endif
 
-/// `all`, a number of robots or of what is counted of them; where it is short one in `share` of it.
+/// Returns `all`, a number of robots or of what is counted of them, or one in `share` of it where
+/// campaigns are short.
 template <class Count>
 constexpr Count campaign(Count all, Count share = 4) {
   return kIsShort ? std::max(all / share, Count{1}) : all;

@@ -16,7 +16,7 @@ model::RobotSpec standing_robot(std::uint64_t seed);
 /// Ways in which a robot can be turned about the vertical and mirrored: the symmetries of a square.
 inline constexpr int kTurnCount = 8;
 
-/// Mirrored in x if `turn` is 4 or more, then turned by `turn` quarters.
+/// The cell mirrored in x if `turn` is 4 or more, then turned by `turn` quarters.
 base::Cell turned(base::Cell cell, int turn);
 
 /// The robot turned, its modules listed in another order for each `order`; 0 is the robot's own.

@@ -44,7 +44,7 @@ constexpr int kExitFails = 1;
 constexpr int kExitOpen = 2;
 constexpr int kExitNotProved = 3;
 
-/// What is proved of the robot, in words and as the exit code.
+/// The verdict that is proved of the robot, in words and as the exit code.
 struct Verdict {
   const char* text;
   int code;
@@ -67,7 +67,7 @@ Verdict verdict_of(const certificate::Verification& found) {
   return {"SAFE: no connection breaks, and the robot stands", kExitHolds};
 }
 
-/// Under which assumption all this holds; empty if there is none.
+/// The assumption under which all this holds; empty if there is none.
 const char* caveat(certificate::Law law, const certificate::Verification& found) {
   switch (law) {
     case certificate::Law::kRegularised:
@@ -85,7 +85,7 @@ const char* caveat(certificate::Law law, const certificate::Verification& found)
   return "";
 }
 
-/// Of which robot all this is.
+/// Shows which robot the certificate is of.
 void show_robot(const certificate::Certificate& made) {
   std::printf("  robot       %s\n  digest      %s\n",
               certificate::robot_words(made.name, made.modules.size(), made.planned_count).c_str(),

@@ -10,7 +10,7 @@
 #include "commands.hpp"
 #include "holdfast/distributed.hpp"
 
-/// --plan, --withdraw and --attach, which `simulate` and `emulate` have in common.
+/// Reads the options --plan, --withdraw and --attach, which `simulate` and `emulate` share.
 namespace holdfast::cli {
 
 struct ChangeOptions {
@@ -21,11 +21,11 @@ struct ChangeOptions {
   bool is_empty() const { return plans.empty() && withdrawals.empty() && attachments.empty(); }
 };
 
-/// `time` says what times are given in.
+/// Adds the options; `time` says what times are given in.
 void add_change_options(CLI::App& command, ChangeOptions& options, const std::string& time);
 
-/// None, and what is wrong is printed, if a text is no place and time. `ticks` turns times as given
-/// into those of the robot.
+/// Reads the changes; none, and the fault is printed, if a text is no place and time. `ticks`
+/// converts times as given into the robot's.
 std::optional<std::vector<Change>> read_changes(const ChangeOptions& options,
                                                 const std::function<sim::Time(double time)>& ticks);
 

@@ -33,7 +33,7 @@ struct CheckArguments {
   int thread_count = 0;
   double memory_gb = 4;
 
-  /// Of files, each with its option.
+  /// The files to be written, each with its option.
   Outputs outputs() const {
     return {{"--json", json, FileFormat::kJson}, {"--csv", csv, FileFormat::kCsv},
             {"--svg", svg, FileFormat::kSvg},    {"--vtk", vtk, FileFormat::kVtu},
@@ -222,7 +222,7 @@ class CheckRun {
     return options;
   }
 
-  /// With a line per second on what is going on.
+  /// The options of a check that reports its progress, one line per second.
   CheckOptions check_options(const Structure& structure, const std::string& file) {
     CheckOptions options{
         .is_bonded = options_.is_bonded,

@@ -44,7 +44,7 @@ Command add_view(CLI::App& app);
 /// The verdict in capitals, coloured on a terminal, padded to the longest.
 std::string banner(verdict::Verdict verdict);
 
-/// What the program ends with when it was asked where the next module may go.
+/// The exit code of a program that was asked where the next module may go.
 int exit_code_of(const NextResult& result);
 
 /// A file, or files, that must be given. The help shows no type beside the name.
@@ -97,8 +97,7 @@ inline int fail(const base::Error& error, const std::string& file) {
   return kExitBadInput;
 }
 
-/// What a reader noticed. Goes to standard error whatever is asked for: a silent note is a lost
-/// one.
+/// Prints a reader's notes to standard error, whatever is asked for: a silent note is a lost one.
 inline void print_notes(std::span<const std::string> notes, const std::string& file) {
   for (const std::string& note : notes) {
     fmt::print(stderr, "holdfast: {}: note: {}\n", io::one_line(file), note);
@@ -116,7 +115,7 @@ inline void print_not_written(const std::string& file, const char* reason) {
   }
 }
 
-/// What is wrong with the name of a robot of the catalogue; empty if nothing is.
+/// Says what is wrong with the name of a robot of the catalogue; empty if nothing is.
 inline std::string robot_name_fault(const std::string& name) {
   return model::find_robot(name) != nullptr
              ? std::string()
@@ -194,8 +193,8 @@ inline void add_connections(CLI::App& command, std::string& choice) {
       ->capture_default_str();
 }
 
-/// False, and the error is printed, if the file cannot be written. "-" is standard output. The
-/// content is a text, or a function that writes into a stream.
+/// Writes a text, or what a function writes into a stream, to a file; "-" is standard output.
+/// Returns false, and prints the error, if the file cannot be written.
 template <class Content>
 bool write_or_complain(const std::string& path, const Content& content) {
   const auto error = write_file(path, content);

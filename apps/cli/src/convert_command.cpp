@@ -28,7 +28,7 @@ void note_large_boxes(const io::Document& document, const ConvertArguments& opti
   }
 }
 
-/// False, and an error, if VisibleSim has no grid for these cells.
+/// Returns false, and prints an error, if VisibleSim has no grid for these cells.
 bool note_shift(const io::Document& document, const ConvertArguments& options) {
   const auto shift = io::visiblesim_shift(document);
   if (!shift) {

@@ -38,14 +38,14 @@ struct EmulateArguments {
   std::string svg;
   bool is_quiet = false;
 
-  /// Of files, each with its option.
+  /// The files to be written, each with its option.
   Outputs outputs() const {
     return {{"--json", json, FileFormat::kJson}, {"--svg", svg, FileFormat::kSvg}};
   }
 };
 
-/// What ./dev firmware has built, or what was installed; if neither is there, where the first would
-/// be.
+/// The image that ./dev firmware has built, or that was installed; if there is neither, where the
+/// first would be.
 std::string default_image(const std::string& board) {
   const char* const name =
       board == "v1" ? "firmware/v1/module_stm32f0.elf" : "firmware/module_stm32f0.elf";
@@ -154,7 +154,7 @@ class EmulateRun {
     });
   }
 
-  /// False if a file cannot be written.
+  /// Shows what the run has found; returns false if a file cannot be written.
   bool show(const Structure& structure, const CheckResult& exact, const EmulatedRun& run) const {
     const bool is_silent = options_.is_quiet || !leaves_standard_output(options_.outputs());
     return show_run(options_, is_silent, structure, exact, run, run.run);

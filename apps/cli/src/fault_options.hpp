@@ -33,8 +33,8 @@ void add_fault_options(CLI::App& command, std::vector<FaultOption<Fault>>& optio
   }
 }
 
-/// None, and what is wrong is printed, if a text is no place of an existing module and time.
-/// `ticks` turns times as given into those of the robot.
+/// Reads the faults; none, and the fault is printed, if a text is no place of an existing module
+/// and time. `ticks` converts times as given into the robot's.
 template <class Fault>
 std::optional<std::vector<Fault>> read_faults(const std::vector<FaultOption<Fault>>& options,
                                               const Structure& structure,

@@ -22,7 +22,7 @@ std::optional<base::Direction> find_direction(std::string_view& text) {
   return std::nullopt;
 }
 
-/// "@T", and nothing behind it.
+/// Reads "@T" and expects nothing behind it.
 bool take_time(std::string_view text, double& time) {
   return take_mark(text, '@') && take_number(text, time) && text.empty() && time >= 0 &&
          time < 1e12;

@@ -17,11 +17,11 @@ struct FaultPlace {
   double time = 0;
 };
 
-/// None if the text is no place of an existing module.
+/// Reads the place of a fault; none if the text is no place of an existing module and time.
 std::optional<FaultPlace> read_fault_place(std::string_view text, bool has_face,
                                            const Structure& structure);
 
-/// Any cell, and when. With `allows_all` "all@T" is agent::kEveryCell.
+/// The cell and time of a change; "all@T" is agent::kEveryCell if `allows_all`.
 struct ChangePlace {
   base::Cell cell;
   double time = 0;
@@ -29,7 +29,7 @@ struct ChangePlace {
 
 std::optional<ChangePlace> read_change_place(std::string_view text, bool allows_all);
 
-/// What is wrong with a text that is none.
+/// Says what is wrong with a text that is no such place.
 std::string change_usage(std::string_view option, std::string_view text, bool allows_all);
 std::string fault_usage(std::string_view option, std::string_view text, bool has_face);
 

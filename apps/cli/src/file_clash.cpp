@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What tells a file from all others: its number if it exists, or else its place.
+/// The identity of a file: its number if it exists, or else its place.
 struct Identity {
   bool exists = false;
   bool is_regular = false;
@@ -37,7 +37,7 @@ Identity identity(const struct stat& status) {
           .place = {}};
 }
 
-/// "-" is the descriptor.
+/// Identifies a file by its path, or by the descriptor if the path is "-".
 Identity identify(std::string_view path, int descriptor) {
   struct stat status {};
 

@@ -21,12 +21,13 @@ struct Output {
 
 using Outputs = std::vector<Output>;
 
-/// What is wrong if an output is an input, or two outputs are one: by whatever spelling, link or
-/// further name, or because standard output goes there; or if standard input is named twice.
-/// Nothing if all is well. Of devices only standard output counts: /dev/null may be given twice.
+/// Says what is wrong if an output is an input, or two outputs are one: by whatever spelling, link
+/// or further name, or because standard output goes there; or if standard input is named twice.
+/// None if all is well. The only device that counts is standard output: /dev/null may be given
+/// twice.
 std::optional<std::string> find_clash(std::span<const std::string> inputs, const Outputs& outputs);
 
-/// What is wrong if the name of an output ends as files of another format do.
+/// Says what is wrong if the name of an output ends as files of another format do.
 std::optional<std::string> find_foreign_ending(const Outputs& outputs);
 
 /// Prints either as wrong usage; false if there is none.

@@ -7,7 +7,8 @@
 
 namespace holdfast::cli {
 
-/// While it lives the first SIGINT or SIGTERM is only noted; the next one does what it always does.
+/// Notes the first SIGINT or SIGTERM while this object lives; the next one does what it always
+/// does.
 class Interruption {
  public:
   Interruption() {

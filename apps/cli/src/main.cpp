@@ -124,7 +124,7 @@ void occupy_standard_descriptors() {
   }
 }
 
-/// Without memory of its own: there may be none.
+/// Reports that memory has run out, without allocating any.
 int fail_out_of_memory() {
   std::fputs(
       "holdfast: out of memory: the structure is too large for this machine, or for the limit "
@@ -159,7 +159,7 @@ int fail_exception() {
   return holdfast::kExitFailure;
 }
 
-/// Where an exception has nobody left to catch it: what it is decides, as in main.
+/// Ends the program as main does after an exception that nobody is left to catch.
 [[noreturn]] void terminate_by_exit() {
   if (std::current_exception()) {
     ::_exit(fail_exception());

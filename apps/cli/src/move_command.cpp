@@ -31,7 +31,7 @@ struct MoveArguments {
   std::string json;
   std::string verified;
 
-  /// Of files, each with its option.
+  /// The files to be written, each with its option.
   Outputs outputs() const {
     return {{"--output", steps, FileFormat::kHoldfastJson}, {"--json", json, FileFormat::kJson}};
   }

@@ -25,7 +25,7 @@ struct NextArguments {
   int thread_count = 0;
   double memory_gb = 4;
 
-  /// Of files, each with its option.
+  /// The files to be written, each with its option.
   Outputs outputs() const {
     return {{"--json", json, FileFormat::kJson}, {"--svg", svg, FileFormat::kSvg}};
   }

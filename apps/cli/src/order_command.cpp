@@ -36,7 +36,7 @@ struct OrderArguments {
   std::string json;
   std::string certificate;
 
-  /// Of files, each with its option.
+  /// The files to be written, each with its option.
   Outputs outputs() const {
     return {{"--output", steps, FileFormat::kHoldfastJson},
             {"--json", json, FileFormat::kJson},

@@ -10,8 +10,8 @@
 /// Files that belong to the program, found from where it is, wherever it was installed.
 namespace holdfast::cli {
 
-/// Where a file may be: beside the program, in ../`folder`, where ./dev builds it, and in
-/// ../share/holdfast, where it is installed.
+/// The places where a file may be: beside the program, in ../`folder`, where ./dev builds it, and
+/// in ../share/holdfast, where it is installed.
 std::vector<std::filesystem::path> places_of(std::string_view name, std::string_view folder);
 
 /// The first of the places where there is one.

@@ -46,7 +46,7 @@ struct SimulateArguments {
   bool asks_next = false;
   bool is_quiet = false;
 
-  /// Of files, each with its option.
+  /// The files to be written, each with its option.
   Outputs outputs() const {
     return {{"--json", json, FileFormat::kJson},
             {"--trace", trace},
@@ -73,7 +73,7 @@ struct TraceFile {
   std::optional<host::OutputFile> file;
   std::unique_ptr<Trace> trace;
 
-  /// False, and the error is printed, if there is one.
+  /// Opens the trace; returns false, and prints the error, if that fails.
   bool open(const std::string& a_path) {
     path = a_path;
     if (path.empty()) {
@@ -89,7 +89,7 @@ struct TraceFile {
     return true;
   }
 
-  /// False, and the error is printed, if writing has failed. The trace ends here.
+  /// Ends the trace; returns false, and prints the error, if writing has failed.
   bool close() {
     trace.reset();
     const auto error = file ? file->finish() : std::nullopt;
@@ -131,7 +131,8 @@ class SimulateRun {
   }
 
  private:
-  /// Is anything asked for that happens to the robot on its way, or tells of it?
+  /// Whether an option asks for something that happens to the robot while it runs, or for its
+  /// record.
   bool has_happenings() const {
     const bool has_faults = std::ranges::any_of(
         options_.faults, [](const auto& fault) { return !fault.texts.empty(); });
@@ -165,7 +166,7 @@ class SimulateRun {
                                                             : kExitBadInput;
   }
 
-  /// False if a file cannot be written.
+  /// Writes the files of `--next`; returns false if one cannot be written.
   bool write_next(const Structure& structure, const SimulatedNext& simulated) const {
     bool is_written = true;
     if (!options_.json.empty()) {
@@ -311,7 +312,7 @@ class SimulateRun {
     });
   }
 
-  /// False if a file cannot be written.
+  /// Shows what the run has found; returns false if a file cannot be written.
   bool show(const Structure& structure, const CheckResult& exact, const DistributedRun& run) const {
     const bool is_silent = options_.is_quiet || !leaves_standard_output(options_.outputs());
     return show_run(options_, is_silent, structure, exact, run, run);

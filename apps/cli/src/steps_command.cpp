@@ -27,7 +27,7 @@ struct StepsArguments {
   bool is_certificate = false;
   int thread_count = 0;
 
-  /// Of files, each with its option.
+  /// The files to be written, each with its option.
   Outputs outputs() const {
     return {{"--json", json, FileFormat::kJson},
             {"--svg", svg, FileFormat::kSvg},

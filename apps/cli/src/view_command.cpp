@@ -18,8 +18,8 @@ struct ViewArguments {
   bool stays_closed = false;
 };
 
-/// Where nobody minds a file: the user looks at it, or saves it. In a folder of its own that only
-/// the user may enter.
+/// A path for a file that the user looks at, or saves, in a folder of its own that only the user
+/// may enter.
 base::Result<std::string> temporary_path(const std::string& name) {
   std::string safe;
   for (const char letter : name) {

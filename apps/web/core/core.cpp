@@ -38,10 +38,10 @@ struct Reply {
 // One program, one caller, one call at a time.
 std::vector<std::uint8_t> input;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 Reply reply;                      // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
-/// That was judged last.
+/// The sequence that was judged last.
 std::optional<SequenceView> sequence;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 
-/// Of the robot and role that were tried last.
+/// The trials of the robot and role that were tried last.
 struct KeptTrials {
   std::vector<std::uint8_t> asked;  ///< The request without its cells.
   CellTrials trials;
@@ -75,7 +75,7 @@ Json vector_json(const std::array<double, 3>& vector) {
   return Json::array({vector[0], vector[1], vector[2]});
 }
 
-/// Of all modules, mm.
+/// The centre of mass of all modules, mm.
 std::array<double, 3> centre_of_mass(const model::Robot& robot) {
   std::array<double, 3> centre{};
   double mass = 0;
@@ -255,7 +255,7 @@ Reply limit_request(const Request& request) {
   return {.text = io::collapse_json(robot.value(), *result.limit), .integers = {}, .numbers = {}};
 }
 
-/// What was prepared for the same robot and role, or else anew.
+/// The trials that were prepared for the same robot and role, or else new ones.
 base::Result<CellTrials*> trials_for(const Request& request) {
   const auto size = static_cast<std::size_t>(request.tail.data() - input.data());
   const std::span asked = std::span(input).first(size);
@@ -272,7 +272,7 @@ base::Result<CellTrials*> trials_for(const Request& request) {
   return &kept_trials->trials;
 }
 
-/// With one more module of the Role in options[0] at each place of the tail. Text: a list of
+/// Tries one more module of the Role in options[0] at each place of the tail. Text: a list of
 /// verdicts, null where no module can be. Numbers: the largest load ratio (-1 if there is none) and
 /// the margin in mm (0 if it is fixed).
 Reply try_places(const Request& request) {
@@ -420,7 +420,7 @@ Reply judge_steps_request(const Request& request) {
           .numbers = {}};
 }
 
-/// Where there is no order, help is sought for so long.
+/// The seconds for which help is sought where there is no order.
 constexpr double kHelpSeconds = 3;
 
 /// An order for the modules of the document, sought for options[0] seconds. Text: the outcome, the
@@ -534,7 +534,7 @@ void write_order(io::JsonStream& json, const char* text, bool is_iteration) {
   json.end_object();
 }
 
-/// What a report says of a simulation, and what the page needs besides to play it.
+/// Writes what a report says of a simulation, and what the page needs besides to play it.
 std::string simulation_summary(const DistributedRun& run, bool is_complete) {
   std::string text;
   io::JsonStream json(text, io::JsonStream::Layout::kCompact);
@@ -577,7 +577,7 @@ Reply simulate_request(const Request& request) {
 
 namespace web = holdfast::web;
 
-/// Where the next request goes, `size` bytes.
+/// The place for the next request of `size` bytes.
 HOLDFAST_EXPORT(holdfast_input)(std::size_t size)->std::uint8_t* {
   web::reply = {};
   web::input.resize(size);

@@ -11,7 +11,7 @@
 
 #include "holdfast/distributed.hpp"
 
-/// What happens in a simulation, as numbers that the page can play.
+/// Logs a simulation as numbers that the page can play.
 namespace holdfast::web {
 
 enum class LogEvent : std::int32_t {
@@ -22,14 +22,14 @@ enum class LogEvent : std::int32_t {
   kOrder,    ///< From, to, wire::Operation: an order is on its way.
 };
 
-/// What a packet carries: kLink is a greeting, ping or acknowledgement; else the first message in
+/// The meaning of a packet: kLink is a greeting, ping or acknowledgement; else the first message in
 /// it.
 enum class PacketMeaning : std::int32_t { kLink, kWave, kOrder, kReport, kVector, kPlanned };
 
 /// Listens to every link, to tell what its packets are.
 class PacketLog : public sim::TraceSink {
  public:
-  /// What comes after `event_count_max` events is left out; is_complete() tells.
+  /// Keeps `event_count_max` events and leaves out later ones, as is_complete() tells.
   explicit PacketLog(std::size_t event_count_max) : event_count_max_(event_count_max) {}
 
   void packet_sent(const sim::PacketTrace& packet, sim::Time line_time) override;

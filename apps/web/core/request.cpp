@@ -14,7 +14,7 @@ namespace {
 
 using model::Material;
 
-/// What files say about a cell, whether its module exists or is planned.
+/// The entries of files by cell, whether the module exists or is planned.
 std::map<base::Cell, io::ModuleEntry> entries_by_cell(const io::Document& document) {
   std::map<base::Cell, io::ModuleEntry> entries;
   if (!document.steps.empty()) {
@@ -31,7 +31,7 @@ std::map<base::Cell, io::ModuleEntry> entries_by_cell(const io::Document& docume
   return entries;
 }
 
-/// What modules have of their own, by cell; existing ones and those that are planned first.
+/// The modules' own parameters by cell; of existing modules and those that are planned first.
 std::map<base::Cell, io::OwnParameters> own_by_cell(const io::Document& document) {
   std::map<base::Cell, io::OwnParameters> own;
   for (const io::OwnParameters& one : document.extension.own) {

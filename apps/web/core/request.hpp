@@ -10,7 +10,7 @@
 
 #include "holdfast/trial.hpp"
 
-/// What the page asks, as bytes. src/core/wasm.ts writes them; both sides must agree.
+/// Reads the page's requests, which are bytes. src/core/wasm.ts writes them; both sides must agree.
 namespace holdfast::web {
 
 inline constexpr std::size_t kOptionCount = 7;
@@ -37,8 +37,8 @@ struct PlacedModule {
 struct Request {
   RequestHeader header;
   std::span<const PlacedModule> modules;
-  /// What a structure says beyond cells and material, as holdfast JSON whose modules are those that
-  /// have something of their own; empty for cubes on a floor under their own weight.
+  /// The rest of a structure beside cells and material, as holdfast JSON whose modules are those
+  /// that have something of their own; empty for cubes on a floor under their own weight.
   std::string_view more;
   std::span<const std::uint8_t> tail;
 };
@@ -48,7 +48,7 @@ Request read_request(std::span<const std::uint8_t> bytes);
 model::Material material_of(const RequestHeader& header);
 std::array<double, kMaterialCount> numbers_of(const model::Material& material);
 
-/// What has to be known for mechanics; Robot::create checks it. Errors: as of io::read_json and
+/// Makes what mechanics must know, which Robot::create checks. Errors: those of io::read_json and
 /// io::make_spec.
 base::Result<model::RobotSpec> spec_of(const Request& request);
 
@@ -56,7 +56,7 @@ base::Result<model::RobotSpec> spec_of(const Request& request);
 bool has_double_cell(const io::Document& document);
 
 /// The document that the page's modules are when everything else is as in `base`: what a file said
-/// about a module, its colour and attributes, stays with its cell. Errors: as of io::read_json.
+/// about a module, its colour and attributes, stays with its cell. Errors: those of io::read_json.
 base::Result<io::Document> edited(const io::Document& base, const Request& request);
 
 /// The text for Request::more of a document that was opened.

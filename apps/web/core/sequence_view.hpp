@@ -9,14 +9,14 @@
 
 namespace holdfast::web {
 
-/// A sequence whose steps can be done, for who looks at it stage by stage.
+/// A sequence whose steps can be done, to be looked at stage by stage.
 class SequenceView {
  public:
   explicit SequenceView(io::Sequence sequence);
 
-  /// By step, what the page draws: how many cells it attaches and detaches, how many groups move;
-  /// x, y, z of these cells; of each group the number of modules and of waypoints, then x, y, z of
-  /// each module before and after, then plan::Group::way, all waypoints.
+  /// Returns what the page draws of each step: how many cells it attaches and detaches, how many
+  /// groups move; x, y, z of these cells; the number of modules and of waypoints of each group,
+  /// then x, y, z of each of its modules before and after, then plan::Group::way, all waypoints.
   std::vector<std::int32_t> transitions() const;
 
   /// The first scene of a stage at a waypoint, which is void but in the shift.

@@ -19,7 +19,7 @@ struct LinkChoice {
   const char* text;
 };
 
-/// In the order in which they are offered, the first one chosen.
+/// The methods in the order in which they are offered; the first one is the default.
 constexpr MethodChoice kMethods[] = {
     {agent::Method::kElimination, "elimination or fronts"},
     {agent::Method::kPolynomial, "polynomial"},
@@ -78,7 +78,7 @@ Json limits_json() {
   return list;
 }
 
-/// As base::Lattice, by io::kNamedLattices.
+/// The lattices by their names in io::kNamedLattices, with the members of base::Lattice.
 Json lattices_json() {
   Json list = Json::array();
   for (const auto& [name, lattice] : io::kNamedLattices) {

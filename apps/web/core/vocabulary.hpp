@@ -7,7 +7,7 @@
 
 #include "holdfast/distributed.hpp"
 
-/// What the page learns from the core instead of repeating it.
+/// Tells the page what it would else have to repeat.
 namespace holdfast::web {
 
 /// The line that a simulation has when the page's choice of a line has this value.

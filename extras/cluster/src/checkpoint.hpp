@@ -20,7 +20,7 @@ namespace holdfast::cluster {
 /// ranks as it likes, goes on from there.
 class Checkpoint final : public solver::ContactJournal {
  public:
-  /// Of a structure with this fingerprint, of whose facets `facet_count` are this rank's.
+  /// The structure has this fingerprint, and `facet_count` of its facets are this rank's.
   Checkpoint(PetscRanks& ranks, std::string file, std::uint64_t fingerprint,
              std::size_t facet_count);
 
@@ -33,12 +33,11 @@ class Checkpoint final : public solver::ContactJournal {
   /// Throws std::runtime_error if the file cannot be written.
   void keep(std::span<const std::uint8_t> states) override;
 
-  /// Once there is an answer: removes the file.
+  /// Removes the file, to be called when there is an answer.
   void remove() const;
 
  private:
-  /// One search, and the states of all ranks' facets along the curve that it has come to; none at
-  /// first.
+  /// One search, and the latest states of all ranks' facets along its curve; none at first.
   struct Search {
     mechanics::ContactLaw law = mechanics::ContactLaw::kRegularised;
     double gamma = 0;

@@ -23,7 +23,7 @@ struct BrokenConnection {
   std::array<base::Cell, 2> ends{};
 };
 
-/// Those of all ranks with the largest load ratios.
+/// The connections of all ranks with the largest load ratios.
 std::vector<std::array<base::Cell, 2>> broken_of_all(const Part& part,
                                                      const Assessment& assessment) {
   std::vector<BrokenConnection> mine;

@@ -17,7 +17,7 @@ struct CheckOptions {
   solver::ContactJournal* journal = nullptr;
 };
 
-/// What a rank knows when all have checked a robot.
+/// The results that a rank knows when all have checked a robot.
 struct Checked {
   verdict::Assessment assessment;
   double seconds = 0;

@@ -12,7 +12,7 @@
 
 namespace holdfast::cluster {
 
-/// What of a robot a rank shows: its first modules, `own_count` of them.
+/// The piece of a robot that a rank shows: its first modules, `own_count` of them.
 struct Piece {
   const model::Robot* robot = nullptr;
   std::size_t own_count = 0;
@@ -20,7 +20,7 @@ struct Piece {
   int rank_count = 1;
 };
 
-/// Why ParaView's file cannot have this name; none if it can.
+/// Says why ParaView's file cannot have this name; none if it can.
 std::optional<std::string> find_name_fault(const std::string& file);
 
 /// Writes a rank's piece for ParaView beside NAME.pvtu, NAME_RANK.vtu; the first rank writes

@@ -44,8 +44,8 @@ struct Options {
   bool is_multigrid_only = false;
   double memory_gb = 4;
   std::size_t alone_max = 6000;  ///< Up to here one machine may solve directly.
-  /// And up to here it is asked where ranks cannot decide, as it has the direct solver: a second
-  /// for a solid, a few for a slender robot.
+  /// Robots of up to so many modules that ranks cannot decide are checked again on one machine,
+  /// which has the direct solver: a second for a solid, a few for a slender robot.
   std::size_t again_max = 100000;
   std::string output;
   std::string family;
@@ -56,7 +56,7 @@ struct Options {
   std::size_t memory_bytes() const { return static_cast<std::size_t>(memory_gb * 1e9); }
 };
 
-/// For end_on_signal().
+/// Whether this is the first rank, for end_on_signal().
 bool is_first_rank = false;
 
 /// Address space for those who end all ranks where there is no more: without it OpenMPI, which
@@ -102,8 +102,9 @@ void end_on_signal(int) {
   std::_Exit(kExitFailure);
 }
 
-/// PETSc 3.18 tells of memory that it does not get with a line for the code: its allocators hand an
-/// error on whose first fields its macro takes for others.
+/// Ends all ranks when PETSc has an error. PETSc 3.18 reports memory that it does not get with a
+/// line number as the code: the macro misreads the first fields of an error that its allocators
+/// hand on.
 PetscErrorCode end_all_on_petsc_error(MPI_Comm, int, const char* function, const char*,
                                       PetscErrorCode code, PetscErrorType, const char* message,
                                       void*) {
@@ -117,7 +118,8 @@ PetscErrorCode end_all_on_petsc_error(MPI_Comm, int, const char* function, const
                       message == nullptr ? "" : message));
 }
 
-/// Where addresses are limited they are not to be had by the gigabyte.
+/// Uses large pages, but not where the address space is limited: they are not to be had by the
+/// gigabyte.
 void use_large_pages_if_unlimited() {
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY) {
@@ -181,7 +183,7 @@ bool write_picture(const Options& options, const Piece& piece,
   return !error;
 }
 
-/// The same at all ranks.
+/// Hands the first rank's verdict to all ranks.
 base::Result<verdict::Verdict> shared(PetscRanks& ranks,
                                       const base::Result<verdict::Verdict>& first) {
   SharedText text;
@@ -195,7 +197,7 @@ base::Result<verdict::Verdict> shared(PetscRanks& ranks,
   return static_cast<verdict::Verdict>(std::stoi(text.document));
 }
 
-/// As one machine does; by multigrid only, if that is asked.
+/// Checks a robot as one machine does; by multigrid only, if that is asked for.
 CheckResult check_by_one(const model::Robot& robot, const Options& options) {
   if (!options.is_multigrid_only) {
     return holdfast::check(robot, {.is_bonded = options.is_bonded,
@@ -391,7 +393,7 @@ void add_file(CLI::App& command, const std::string& name, std::string& file,
   command.add_option(name, file, help)->type_name("FILE");
 }
 
-/// As of the commands of holdfast.
+/// Adds the options for reading that the commands of holdfast have.
 void add_reading(CLI::App& command, io::ReadOptions& reading) {
   command.add_option("--robot", reading.robot, "Robot of files that do not say it")
       ->type_name("NAME");
@@ -410,7 +412,7 @@ void add_reading(CLI::App& command, io::ReadOptions& reading) {
                    "Ignore keys of holdfast JSON that are unknown, with a note");
 }
 
-/// Which of one rank and of many answers.
+/// Adds the options that decide whether one rank answers or many.
 void add_sizes(CLI::App& check, Options& options) {
   check
       .add_option("--alone-max", options.alone_max,

@@ -17,8 +17,8 @@ namespace {
 
 using base::at;
 
-/// How far a seed other than 0 disturbs what candidates are sorted by: enough to change the order
-/// of neighbours, not that of near and far.
+/// The share by which a seed other than 0 disturbs what candidates are sorted by: enough to change
+/// the order of neighbours, not that of near and far.
 constexpr double kDisturbance = 0.05;
 
 /// The factor of an element's key, the same for the same element and seed.
@@ -59,7 +59,7 @@ void sort_by(std::vector<Element>& elements, Key&& key) {
   std::ranges::transform(keyed, elements.begin(), &std::pair<double, Element>::second);
 }
 
-/// What the lever of a spring says of its length.
+/// The length of a spring, from its lever.
 double arm_length(const LowRankTerm& spring) {
   // Rows of moments, columns of forces: minus the cross product with the arm.
   return std::hypot(spring.lever.at(5, 1), spring.lever.at(3, 2), spring.lever.at(4, 0));
@@ -173,8 +173,9 @@ std::vector<Element> NetworkStructure::addable(const ElementSet& state, std::uin
   return closing;
 }
 
-/// Elements on a closed way of others, and those with nothing behind them: an element without which
-/// a node is out of reach takes with it what hangs there, unless that is nothing [Tarjan 1972].
+/// The elements that lie on a closed path of others, and those with nothing behind them. An element
+/// without which a node is out of reach takes all with it that is held by it alone, unless that is
+/// nothing [Tarjan 1972].
 std::vector<Element> NetworkStructure::removable(const ElementSet& state,
                                                  std::uint64_t seed) const {
   struct Visit {
@@ -255,7 +256,7 @@ Judgement NetworkStructure::judge(const ElementSet& state) {
           .load_ratio_max = ratio};
 }
 
-/// What the criterion says of growing_; NaN if its equations cannot be solved.
+/// The criterion's value for growing_; NaN if its equations cannot be solved.
 double NetworkStructure::used() {
   const std::vector<base::Vec6<double>>& u = growing_.displacements();
   return u.size() == network_->node_count ? criterion_(u)

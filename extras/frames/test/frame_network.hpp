@@ -6,7 +6,7 @@
 #include "holdfast/frames/spring_network.hpp"
 #include "holdfast/plan/order_search.hpp"
 
-/// The same frames for the planner.
+/// Makes networks for the planner from the frames of frame_reference.hpp.
 namespace holdfast::test {
 
 /// One node of the network per node of the frame; nothing touches those that are grounded.

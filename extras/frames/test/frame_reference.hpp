@@ -30,7 +30,7 @@ struct Frame {
 using Matrix12 = Eigen::Matrix<double, 12, 12>;
 using Vector12 = Eigen::Matrix<double, 12, 1>;
 
-/// In the bar's axes, x along it.
+/// The stiffness of a bar in its own axes, x along it.
 inline Matrix12 local_beam(const Frame& frame, double l) {
   const double pi = 3.14159265358979323846;
   const double r = frame.radius_mm;

@@ -47,7 +47,7 @@ LowRankTerm random_term(base::Rng& rng, std::int32_t a, std::int32_t b) {
           .stiffness = block(root * root.transpose() + 0.5 * Matrix6::Identity())};
 }
 
-/// A connected graph: each node hangs on an earlier one or the ground, then pairs at random.
+/// A connected graph: each node is joined to an earlier one or the ground, then pairs at random.
 std::vector<LowRankTerm> random_terms(base::Rng& rng, std::int32_t node_count, int more) {
   std::vector<LowRankTerm> terms;
   for (std::int32_t node = 0; node < node_count; ++node) {
@@ -108,7 +108,7 @@ struct Case {
         present, [&](std::size_t t) { return t == left || held.contains(terms[t].b); });
   }
 
-  /// By Eigen, from the sum of all terms that are present; zero at nodes that are not.
+  /// The solution by Eigen, from the sum of all terms that are present; zero at nodes that are not.
   Eigen::VectorXd dense_solution(const Eigen::VectorXd& load) const {
     Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(6 * node_count, 6 * node_count);
     for (const std::size_t t : present) {

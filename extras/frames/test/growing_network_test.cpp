@@ -17,7 +17,7 @@ namespace {
 
 using base::at;
 
-/// Of the largest displacement. The networks solve to 1e-10 of the loads.
+/// The tolerance as a share of the largest displacement. The networks solve to 1e-10 of the loads.
 constexpr double kTolerance = 1e-8;
 
 std::vector<std::int32_t> bars_there(const GrowingNetwork& growing) {

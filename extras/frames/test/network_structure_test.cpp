@@ -20,7 +20,7 @@ namespace {
 
 using base::at;
 
-/// By mask of bars the largest translation, infinite if not all are connected to the ground.
+/// The largest translation by mask of bars, infinite if not all are connected to the ground.
 std::vector<double> translations(const test::Frame& frame) {
   const std::size_t count = frame.bars.size();
   std::vector<double> by_mask;

@@ -7,9 +7,9 @@
 
 namespace holdfast::test {
 
-/// A frame of printed bars that hangs together: the first three of `node_count` nodes are grounded,
-/// each other one is held by a bar from an earlier one; then `more` bars between random nodes. In
-/// the order of their numbers every bar touches what is there.
+/// A connected frame of printed bars: the first three of `node_count` nodes are grounded, each
+/// other one is held by a bar from an earlier one; then `more` bars join random nodes. In the order
+/// of their numbers every bar touches what is there.
 inline Frame random_frame(std::uint64_t seed, std::int32_t node_count, int more) {
   base::Rng rng(seed);
   const auto coordinate = [&] { return static_cast<double>(rng.below(100'000)) / 1000; };

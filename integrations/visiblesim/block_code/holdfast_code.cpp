@@ -15,7 +15,7 @@
 namespace holdfast::visiblesim {
 namespace {
 
-/// What an interruption is for: the agent's call, or with a face added the line of that face.
+/// The purpose of an interruption: the agent's call, or with a face added the line of that face.
 constexpr int kCall = 0;
 constexpr int kLine = 1;
 

@@ -31,7 +31,7 @@ class HoldfastCode final : public BlinkyBlocks::BlinkyBlocksBlockCode, private B
   void parseUserElements(TiXmlDocument* configuration) override;
   bool parseUserCommandLineArgument(int& argc, char** argv[]) override;
 
-  /// Null before the module has started.
+  /// The module's program; null before the module has started.
   Block* block() { return block_.get(); }
 
  private:

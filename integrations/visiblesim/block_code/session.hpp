@@ -10,7 +10,8 @@
 #include "ensemble.hpp"
 #include "settings.hpp"
 
-/// What there is once in a run of VisibleSim: the options, the robot as a whole, what is printed.
+/// Holds what there is once in a run of VisibleSim: the options, the robot as a whole, what is
+/// printed.
 namespace holdfast::visiblesim {
 
 class Session {
@@ -35,7 +36,7 @@ class Session {
   /// Prints the report, and writes it if that is asked for.
   void finish();
 
-  /// For the window; may be called by another thread.
+  /// The state of the run for the window, which may ask from another thread.
   std::string status();
 
   /// 0 safe, 1 overload or unstable, 2 undecided.

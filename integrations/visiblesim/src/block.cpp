@@ -141,7 +141,7 @@ void Block::stop() {
   ensemble_.tell_verdict();
 }
 
-/// Before every event: what the last one has left to send goes first. False: there is no module to
+/// Prepares an event: what the last one has left to send goes first. False if there is no module to
 /// take it.
 bool Block::begin() {
   if (!takes_part()) {
@@ -195,7 +195,7 @@ void Block::set_wake(Time wake_at, bool is_watching) {
   ensemble_.work_changed((has_work() ? 1 : 0) - (had_work ? 1 : 0));
 }
 
-/// After an event: send, or compute first.
+/// Ends an event: the module sends, or computes first.
 void Block::settle() {
   const Time compute_time = ensemble_.options().link.compute_time;
   if (compute_time == 0) {

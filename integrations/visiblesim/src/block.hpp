@@ -18,7 +18,7 @@ namespace holdfast::visiblesim {
 
 using agent::Time;
 
-/// What goes over a line.
+/// A packet that goes over a line.
 struct Packet {
   std::span<const std::uint8_t> bytes = {};
   std::uint64_t rounds = 0;  ///< Of the chain of packets that ends with this one.
@@ -38,7 +38,7 @@ class BlockHost {
   /// line can take the next one, and always does.
   virtual void send(base::Direction face, const Packet& packet) = 0;
 
-  /// Block::called(at) follows at that time, or later if the module computes then.
+  /// Asks for Block::called(at), which follows at that time, or later if the module computes then.
   virtual void call_at(Time at) = 0;
 
   /// The verdict or the colour may have changed.
@@ -53,7 +53,7 @@ class BlockHost {
 /// computed.
 class Block {
  public:
-  /// `random`: where the numbers of link-ups begin; should differ from block to block.
+  /// Link-ups are numbered from `random` on, which should differ from block to block.
   Block(Ensemble& ensemble, BlockHost& host, std::uint32_t id, const base::Cell& cell,
         std::uint16_t random);
   ~Block();
@@ -63,13 +63,13 @@ class Block {
   /// The module wakes up in its place and looks around.
   void start();
 
-  /// Somebody may have come or gone at any face.
+  /// Looks for modules that have come or gone at any face.
   void look_around();
 
   void receive(base::Direction face, const Packet& packet);
   void line_free(base::Direction face);
 
-  /// `at`: the time that was asked for.
+  /// Handles a call; `at` is the time that was asked for.
   void called(Time at);
 
   void plan(const base::Cell& cell);
@@ -84,7 +84,7 @@ class Block {
 
   bool is_attached() const { return is_attached_; }
 
-  /// Has it something to do but watching over a verdict?
+  /// Whether the block has something to do but watching over a verdict.
   bool has_work() const { return timer_.wake_at != agent::kNever && !is_watching_; }
 
   Time busy_until() const { return busy_until_; }
@@ -100,7 +100,8 @@ class Block {
             .bytes_sent = bytes_sent_};
   }
 
-  /// What a tap shows: the robot's verdict and the load ratios of this module's connections.
+  /// The text that a tap shows: the robot's verdict and the load ratios of this module's
+  /// connections.
   std::string describe() const;
 
  private:

@@ -94,8 +94,8 @@ sim::SimulationResult Ensemble::result() const {
   return outcome.result();
 }
 
-/// The document with the modules that are there and, if the module is there that was told of them,
-/// the plans whose cells are free.
+/// The document with the modules that are there and, if the module that was told of the plans is
+/// there, those plans whose cells are free.
 base::Result<Structure> Ensemble::structure_now() const {
   io::Document document = structure_.document;
   std::vector<io::ModuleEntry> modules;

@@ -11,7 +11,7 @@
 #include "holdfast/distributed.hpp"
 #include "holdfast/sim/recorder.hpp"
 
-/// What the blocks of a robot share, and what they have come to as a whole.
+/// Holds what the blocks of a robot share, and their result as a whole.
 namespace holdfast::visiblesim {
 
 class Block;
@@ -25,8 +25,8 @@ struct EnsembleReport {
 
 class Ensemble {
  public:
-  /// Of the options count link, method, degree_max and watch_for. There is no fault in them:
-  /// sim::find_floor_fault(), sim::find_options_fault().
+  /// Takes link, method, degree_max and watch_for from the options, in which
+  /// sim::find_floor_fault() and sim::find_options_fault() find no fault.
   Ensemble(Structure structure, sim::SimulationOptions options);
 
   const agent::Setup& setup() const { return setup_; }
@@ -35,7 +35,7 @@ class Ensemble {
 
   sim::Recorder& recorder() { return recorder_; }
 
-  /// Of the module that knows its cell and is told of the robot's plan.
+  /// The cell of the module that knows its cell and is told of the robot's plan.
   const base::Cell& first_cell() const { return structure_.document.modules.front().cell; }
 
   /// The run does not end: nothing is ever at rest.
@@ -53,35 +53,35 @@ class Ensemble {
   /// A block takes part from now on. Returns its index.
   std::int32_t add(const Block& block);
 
-  /// It takes part no longer; `verdict` is what it knew.
+  /// A block takes part no longer; `verdict` is what it knew.
   void leave(agent::Verdict verdict);
 
-  /// It is no more.
+  /// Removes a block from the list.
   void remove(std::int32_t index);
 
-  /// So many blocks more have something to do but watching over their verdict.
+  /// Changes the number of blocks that have something to do but watching over their verdict.
   void work_changed(int change) { work_count_ += change; }
 
-  /// So many packets more are under way, or other changes are to come.
+  /// Changes the number of packets that are under way and of changes that are to come.
   void pending_changed(int change) { pending_count_ += change; }
 
-  /// Something broke of which nobody is told.
+  /// Notes the time of a break that no module is told of.
   void break_happened(agent::Time now) { break_at_ = now; }
 
   /// A block's verdict; kNone: it does not know any.
   void verdict_changed(agent::Verdict from, agent::Verdict to);
 
-  /// Nothing is left to do but to watch over verdicts, and there is nothing to be found by that, as
-  /// in sim::Simulation.
+  /// Whether modules only watch over verdicts, and there is nothing that they could find, as in
+  /// sim::Simulation.
   bool is_at_rest(agent::Time now) const;
 
-  /// Called when every module that takes part has come to know a verdict.
+  /// Sets the function that is called when every module that takes part has come to know a verdict.
   void on_verdict(std::function<void()> callback) { on_verdict_ = std::move(callback); }
 
-  /// Calls that if it is so.
+  /// Calls the function of on_verdict() if every module that takes part knows a verdict.
   void tell_verdict() const;
 
-  /// Does every module that takes part know a verdict?
+  /// Whether every module that takes part knows a verdict.
   bool knows_verdict() const { return part_count_ > 0 && part_count_ == knowing_count_; }
 
   sim::SimulationResult result() const;

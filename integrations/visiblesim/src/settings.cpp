@@ -23,7 +23,7 @@ std::optional<Number> number(std::string_view text) {
   return value;
 }
 
-/// What stands before the mark; the text goes on behind it.
+/// Takes the text before the mark; the text goes on behind it.
 std::string_view take_until(std::string_view& text, char mark) {
   const std::size_t end = std::min(text.find(mark), text.size());
   const std::string_view part = text.substr(0, end);

@@ -53,7 +53,7 @@ struct Robot {
   PlainWorld world;
 };
 
-/// What `holdfast simulate` finds for the same robot.
+/// The result of `holdfast simulate` for the same robot.
 sim::SimulationResult simulated(const Robot& robot, const sim::SimulationOptions& options) {
   sim::Simulation simulation(robot.structure.robot, options);
   simulation.run();
@@ -127,7 +127,8 @@ TEST(Block, computes_before_it_sends_and_before_it_hears_more) {
   EXPECT_GT(blocks.verdict_time, at_once.verdict_time * 3 / 2);
 }
 
-/// While the robot works, and when it has long known a verdict and only watches over it.
+/// A module dies while the robot works, or when it has long known a verdict and only watches over
+/// it.
 class DeathTest : public testing::TestWithParam<Time> {};
 
 TEST_P(DeathTest, leaves_the_others_undecided) {

@@ -12,15 +12,15 @@
 #include "holdfast/sim/event_queue.hpp"
 #include "holdfast/sim/link_model.hpp"
 
-/// What VisibleSim does for blocks, in its plainest form: our own simulator's queue and lines
-/// behind the same interface.
+/// Does for blocks what VisibleSim does, in its plainest form: with our own simulator's queue and
+/// lines behind the same interface.
 namespace holdfast::visiblesim {
 
 class PlainWorld {
  public:
   explicit PlainWorld(Ensemble& ensemble) : ensemble_(ensemble) {}
 
-  /// Puts a module into a cell; it starts now. `random` as of Block.
+  /// Puts a module into a cell, where it starts now; `random` is that of Block.
   void attach(const base::Cell& cell, std::uint16_t random);
 
   /// Modules that are there from the beginning start together.

@@ -7,7 +7,7 @@ namespace {
 
 constexpr const char* kTooLarge = "a force is too large for the numbers of the proof";
 
-/// Rotation about x or y, and the state's tilt about it.
+/// A rotation about x or y, and the state's tilt about it.
 struct Tilt {
   std::size_t index;
   int sign;
@@ -47,7 +47,7 @@ Six balancing_at_b(const Six& rest, int axis) {
   return s;
 }
 
-/// At the end a: r_t = -s_t, r_m = -s_m - e x s_t.
+/// The spring forces s that balance a rest r at the end a: r_t = -s_t, r_m = -s_m - e x s_t.
 Six balancing_at_a(const Six& rest, int axis) {
   Six s = lever_of(rest, axis);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -81,8 +81,8 @@ Springs Balancer::facet_springs(const State& state) const {
   return springs;
 }
 
-/// What has to follow c t_z, with c = (1 - gamma) times the facet's half width: the nearest
-/// integer, and one unit more in the field that belongs to this facet.
+/// Sets the follower, an integer near c t_z with c = (1 - gamma) times the facet's half width, and
+/// one unit more in the field that belongs to this facet.
 void Balancer::follow(std::size_t facet, std::size_t field, const Six& gap,
                       Balance& balance) const {
   const double force = constants_.follow.middle() * static_cast<double>(gap[kZ]);
@@ -182,7 +182,7 @@ Balance Balancer::from_springs(std::size_t field) const {
   return balance;
 }
 
-/// From the ends of the trees to their roots.
+/// Goes from the ends of the trees to their roots.
 void Balancer::close(Balance& balance) const {
   const std::vector<std::size_t>& facets = structure_.facets();
   std::vector<std::size_t> facet_of(balance.rest.size());

@@ -7,8 +7,8 @@
 
 #include "statics.hpp"
 
-/// From displacements to forces that balance exactly: those of the springs, and what they leave
-/// over passed down to the supports, beam by beam.
+/// Makes forces that balance exactly from displacements: the springs' forces, and what they leave
+/// over, which is passed down to the supports beam by beam.
 namespace holdfast::certificate {
 
 /// The forces that belong to a field, and how far the two are apart.

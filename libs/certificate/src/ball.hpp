@@ -14,7 +14,7 @@ class Ball {
  public:
   constexpr Ball() = default;
 
-  /// Exactly this number.
+  /// The ball of exactly this number.
   constexpr Ball(double value) : middle_(value) {}  // NOLINT: numbers are balls.
 
   constexpr Ball(double middle, double radius) : middle_(middle), radius_(radius) {}
@@ -59,7 +59,7 @@ class Ball {
   /// An upper bound of the root of the largest value.
   double root_high() const { return high() <= 0 ? 0 : upward(std::sqrt(high())); }
 
-  /// With so much more on both sides.
+  /// The ball that reaches further by so much on both sides.
   Ball widened(double by) const { return rounded(middle_, radius_ + by); }
 
  private:
@@ -67,7 +67,7 @@ class Ball {
   static constexpr double kUnit = std::numeric_limits<double>::epsilon() / 2;
   static constexpr double kTiny = 1e-300;  ///< More than underflow can lose.
 
-  /// Above what was rounded to this: by two units in the last place or more.
+  /// Rounds up: adds two units in the last place or more to a rounded value.
   static double upward(double value) {
     const double above = value + (std::abs(value) * (4 * kUnit) + kTiny);
     if (std::isnan(above)) {

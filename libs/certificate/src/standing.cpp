@@ -29,7 +29,8 @@ class Plan {
 
   double y(const Corner& corner) const { return corner.y + corner.side_y * half_width_.middle(); }
 
-  /// About where c lies from the line from a to b: positive on the left.
+  /// The approximate distance of c from the line from a to b, times its length; positive on the
+  /// left.
   double turn(const Corner& a, const Corner& b, const Corner& c) const {
     return (x(b) - x(a)) * (y(c) - y(a)) - (y(b) - y(a)) * (x(c) - x(a));
   }
@@ -64,7 +65,7 @@ class Plan {
   double sum_y_ = 0;
 };
 
-/// About the convex hull, counter-clockwise [Andrew 1979].
+/// The corners near the convex hull, counter-clockwise [Andrew 1979]; rounding is ignored.
 std::vector<Corner> hull_of(std::vector<Corner> corners, const Plan& plan) {
   std::sort(corners.begin(), corners.end(), [&](const Corner& a, const Corner& b) {
     return std::pair(plan.x(a), plan.y(a)) < std::pair(plan.x(b), plan.y(b));
@@ -87,9 +88,9 @@ std::vector<Corner> hull_of(std::vector<Corner> corners, const Plan& plan) {
 
 }  // namespace
 
-/// Whatever the chain of corners is: seen from a point on the left of all its edges it goes around
-/// at least once, so the point lies strictly inside the corners' convex hull. And whatever the
-/// direction is, the point lies outside if it lies further along it than all corners.
+/// The proof does not need the hull to be right. A point on the left of all edges of any closed
+/// chain of corners has the chain go around it at least once, so it lies strictly inside the
+/// corners' convex hull. A point that lies further along any direction than all corners is outside.
 Standing standing_of(const Certificate& certificate, const Structure& structure,
                      const Constants& constants) {
   const auto is_fixed = [](const Module& module) { return module.is_fixed; };

@@ -6,8 +6,8 @@
 
 namespace holdfast::certificate {
 
-/// Where the centre of mass surely lies, strictly, of the support polygon; neither within rounding
-/// of its border.
+/// Whether the centre of mass surely lies inside or outside the support polygon, strictly; neither
+/// within rounding of its border.
 struct Standing {
   bool is_inside = false;  ///< Or a fixed module holds the robot.
   bool is_outside = false;

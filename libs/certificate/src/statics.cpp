@@ -10,7 +10,8 @@ namespace {
 
 using Cell = std::array<std::int32_t, 3>;
 
-/// As it stands in the certificate, or as it stood in the file, in decimal.
+/// Encloses the double in the certificate and the decimal number in the file that was rounded to
+/// it.
 Ball number(double value) {
   return {value, std::abs(value) * std::numeric_limits<double>::epsilon()};
 }
@@ -135,7 +136,7 @@ bool Structure::plant(const Certificate& certificate, bool is_full_only) {
   return !order_.empty();
 }
 
-/// Breadth first, so ways are short.
+/// Goes breadth first, so that paths are short.
 void Structure::grow() {
   for (std::size_t next = 0; next < order_.size(); ++next) {
     const std::size_t module = order_[next];

@@ -22,7 +22,7 @@ constexpr int kZ = 2;
 
 using Springs = std::array<Ball, 6>;
 
-/// Its nearest double, which is as near as the sum with zero is rounded.
+/// The ball of an integer: its nearest double, and the rounding of a sum with zero.
 inline Ball ball_of(Integer value) { return Ball(0) + Ball(static_cast<double>(value)); }
 
 struct Beam {
@@ -31,7 +31,7 @@ struct Beam {
   int axis = 0;
 };
 
-/// What follows from the material; h by axis, for facets that of z.
+/// The constants that follow from the material; h by axis, for facets that of z.
 struct Constants {
   explicit Constants(const Material& material);
 
@@ -43,12 +43,13 @@ struct Constants {
   std::array<Ball, 3> strength;  ///< Over W, by axis.
 };
 
-/// Cells, beams, facets, and on which way a module's load gets to the ground.
+/// The cells, beams and facets of a robot, and the path by which each module's load reaches the
+/// ground.
 class Structure {
  public:
   explicit Structure(const Certificate& certificate);
 
-  /// Why this is no robot, or empty.
+  /// Says why this is no robot, or empty.
   const std::string& fault() const { return fault_; }
 
   const std::vector<Beam>& beams() const { return beams_; }
@@ -56,7 +57,7 @@ class Structure {
   /// Modules on the ground, ascending.
   const std::vector<std::size_t>& facets() const { return facets_; }
 
-  /// What link() gives for a module on the ground.
+  /// The values of link() for a module on the ground, a fixed one, and one that is not reached yet.
   static constexpr std::size_t kFacet = static_cast<std::size_t>(-1);
   static constexpr std::size_t kFixed = static_cast<std::size_t>(-2);
   static constexpr std::size_t kNone = static_cast<std::size_t>(-3);
@@ -67,7 +68,7 @@ class Structure {
   /// Every module after the one that its link leads to.
   const std::vector<std::size_t>& order() const { return order_; }
 
-  /// How many beams there are from a module to its support.
+  /// The number of beams from a module to its support.
   const std::vector<std::size_t>& depth() const { return depth_; }
 
  private:
@@ -84,7 +85,7 @@ class Structure {
   std::vector<std::size_t> depth_;
 };
 
-/// w of a beam, or of the facet of module b.
+/// The gap w of a beam, or of the facet of a module.
 Six gap(const Field& field, const Beam& beam);
 Six facet_gap(const Field& field, std::size_t module);
 

@@ -14,7 +14,7 @@ namespace {
 constexpr std::string_view kTitle = "holdfast-certificate";
 constexpr std::string_view kLaws[] = {"bonded", "regularised", "unilateral"};
 
-/// What a module's line ends with: open, pressed, and the signs of its tilts.
+/// The end of a module's line: open, pressed, and the signs of its tilts.
 constexpr char kSigns[] = {'-', '0', '+'};
 
 struct Named {
@@ -44,14 +44,14 @@ void append(std::string& text, Number number) {
   text.append(digits, end.ptr);
 }
 
-/// So many digits that the same double is read again.
+/// Writes as many digits as it takes to read the same double again.
 void append(std::string& text, double number) {
   char digits[32];
   std::snprintf(digits, sizeof digits, "%.17g", number);
   text += digits;
 }
 
-/// Hexadecimal, with a sign.
+/// Writes an integer in hexadecimal digits, with a minus sign if it is negative.
 void append_integer(std::string& text, Integer value) {
   constexpr unsigned kDigits = 32;
   char digits[kDigits];
@@ -111,7 +111,7 @@ void append_material(std::string& text, const Certificate& certificate) {
   text += '\n';
 }
 
-/// Its cell, and what holds it.
+/// Writes a module's cell and what holds it.
 void append_module(std::string& text, const Certificate& certificate, const Module& module) {
   for (const std::int32_t coordinate : module.cell) {
     append(text, coordinate);
@@ -187,7 +187,7 @@ class Words {
     return value;
   }
 
-  /// At most 30 hexadecimal digits, so nothing overflows.
+  /// Reads an integer of at most 30 hexadecimal digits, so that nothing overflows.
   Integer integer() {
     std::string_view word = next();
     const bool is_negative = !word.empty() && word.front() == '-';

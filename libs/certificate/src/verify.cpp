@@ -102,7 +102,7 @@ class Verifier {
     return certificate_.law == Law::kUnilateral ? check_unilateral_states() : std::string();
   }
 
-  /// How far what follows at a facet is from c times its pressure, which is t_z; at most.
+  /// Bounds how far the torque that follows at a facet is from c times its pressure, which is t_z.
   double follower_fault(const Balance& balance, std::size_t facet, double error,
                         Integer unit) const {
     const Ball pressure = ball_of(balance.facet[facet][kZ]).widened(error);

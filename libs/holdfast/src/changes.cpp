@@ -15,7 +15,7 @@ bool is_occupied(const Modules& modules, const base::Cell& cell) {
   return std::ranges::find(modules, cell, &io::ModuleEntry::cell) != modules.end();
 }
 
-/// What is planned after a change.
+/// Updates what is planned after a change.
 void follow(const Change& change, const Modules& modules, io::Step& step) {
   const bool is_all = change.kind == Change::Kind::kWithdraw && change.cell == agent::kEveryCell;
   std::erase_if(step,

@@ -21,7 +21,8 @@ bool is_determinate(const model::Robot& robot) {
   return static_cast<std::size_t>(carrying) + robot.facets().size() == robot.free_count();
 }
 
-/// Load ratios of both that are further apart than is promised of one law (docs/distributed.md).
+/// Whether the load ratios of the exact answer and the robot differ by more than is promised under
+/// one law (docs/distributed.md).
 bool is_far(const verdict::Assessment& exact, const agent::Answer& answer) {
   const auto ratio = load_ratio_max(answer);
   return ratio && exact.load_ratio_max &&

@@ -48,7 +48,7 @@ std::optional<float> find_load_ratio(const model::Robot& robot, const Agents& ag
   return std::nullopt;
 }
 
-/// False if some connection's owner has no load ratio.
+/// Returns false if some connection's owner has no load ratio.
 bool take_load_ratios(const model::Robot& robot, const Agents& agents,
                       std::vector<verdict::ConnectionResult>& connections) {
   for (std::size_t i = 0; i < connections.size(); ++i) {

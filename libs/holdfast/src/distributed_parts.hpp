@@ -6,21 +6,21 @@
 
 #include "holdfast/distributed.hpp"
 
-/// What simulated and emulated robots have in common.
+/// Does what simulated and emulated robots have in common.
 namespace holdfast {
 
-/// What the robot knows, in the form of an assessment.
+/// The robot's knowledge in the form of an assessment.
 verdict::Assessment view_of(const model::Robot& robot, const verdict::Assessment& exact,
                             const Agents& agents, const sim::SimulationResult& result);
 
-/// Which connection the robot names, and its limit.
+/// Notes which connection the robot names as the worst, and its limit.
 void note_worst(const model::Robot& robot, DistributedRun& run);
 
 /// Whether the robot has load ratios of another contact law than the exact answer.
 bool has_other_law(const verdict::Assessment& exact, const sim::SimulationResult& result);
 
-/// What the robot's error is, and why it answers otherwise than the exact answer, of a run with
-/// result and view. `has_lost_modules`: modules were taken off.
+/// Notes the kind of the robot's error, and why it answers otherwise than the exact answer, in a
+/// run that has its result and view. `has_lost_modules`: modules were taken off.
 void note_difference(const model::Robot& robot, const verdict::Assessment& exact,
                      bool has_lost_modules, DistributedRun& run);
 
@@ -35,7 +35,7 @@ std::string time_text(const sim::LinkModel& link, sim::Time time, const std::str
 void write_answer(TextOut out, const Structure& structure, const CheckResult& exact,
                   const DistributedRun& run);
 
-/// How many messages were refused; no line where none was.
+/// Writes how many messages were refused; no line where none was.
 void write_refused(TextOut out, const RefusedMessages& refused);
 
 }  // namespace holdfast

@@ -13,7 +13,7 @@ namespace {
 /// All phases but the last, in which nothing is left to do.
 constexpr std::size_t kBusyPhaseCount = sim::kPhaseCount - 1;
 
-/// Does the robot name a worst connection?
+/// Whether the robot names a worst connection.
 bool has_worst(const sim::SimulationResult& result) {
   return load_ratio_max(result.answer) && result.effort.module_count > 1;
 }

@@ -12,7 +12,7 @@
 namespace holdfast {
 namespace {
 
-/// What is written, and how the names of such files end.
+/// A format that is written, and the endings of such files.
 struct Endings {
   FileFormat format;
   std::string_view name;
@@ -34,11 +34,11 @@ const std::vector<Endings>& formats() {
   return all;
 }
 
-/// Of formats that nothing here writes.
+/// The endings of formats that nothing here writes.
 constexpr std::string_view kOtherEndings[] = {".png", ".pdf",    ".jpg", ".jpeg", ".gif", ".eps",
                                               ".vtk", ".vtkhdf", ".stl", ".obj",  ".md"};
 
-/// In small letters, with its dot.
+/// The ending of a path in small letters, with its dot.
 std::string ending_of(std::string_view path) {
   std::string ending = std::filesystem::path(path).extension().string();
   std::ranges::transform(ending, ending.begin(), [](char letter) {

@@ -136,7 +136,7 @@ base::Result<model::Robot> make_robot(const RobotCells& cells, int thread_count)
 
 namespace {
 
-/// With the elastic forces as a start, where they are known and in equilibrium.
+/// Finds the limit load; the elastic forces are the start where they are known and in equilibrium.
 limit::LimitLoad find_limit(const model::Robot& robot, const verdict::Assessment& assessment,
                             const CheckOptions& options) {
   const limit::Structure structure = limit::structure_of(robot, options.is_bonded);

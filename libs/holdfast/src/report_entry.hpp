@@ -11,13 +11,13 @@
 
 namespace holdfast {
 
-/// What a report needs of a checked structure: views of both.
+/// The views of a checked structure that a report needs.
 io::ReportEntry entry_of(const Structure& structure, const CheckResult& result);
 
 /// Adds the reader's notes to a text report, if they belong there.
 void add_notes(std::string& text, std::span<const std::string> notes, const TextOptions& options);
 
-/// What a function writes to a stream, as a text.
+/// The text that a function writes to a stream.
 template <class Write>
 std::string text_of(const Write& write) {
   std::ostringstream out;

@@ -44,8 +44,8 @@ void add_face(Place& place, const agent::FreeFace& face) {
   }
 }
 
-/// Do its modules judge all free faces together? Where more is known to them than cubes on a floor
-/// every cell is planned in turn; also where only what comes would touch more.
+/// Whether the robot's modules judge all free faces together. Every cell is planned in turn where
+/// modules know more than cubes on a floor, or would touch more once one comes.
 bool judges_faces(const model::RobotSpec& spec, const model::Robot& robot) {
   return !model::find_beyond_paper(robot).has_value() && spec.obstacles.empty() &&
          spec.floor == model::Touch{};
@@ -102,7 +102,7 @@ std::vector<Trial> sorted_trials(const Places& places) {
   return trials;
 }
 
-/// What the verdict on a plan says of the face that it is planned at.
+/// The answer on the face that a plan is for, from the verdict on the plan.
 agent::FreeFace face_of(const agent::Answer& answer) {
   const bool has_ratio =
       answer.verdict == agent::Verdict::kSafe || answer.verdict == agent::Verdict::kOverload;
@@ -181,9 +181,9 @@ bool can_be(model::RobotSpec robot, const CellList& more) {
   return model::Robot::create(robot, 1).has_value();
 }
 
-/// Free cells in which a module can be, the robot being what it is, in groups of cells that modules
-/// can be in at once: below one that rests on the floor nothing is, and none rests on what is not
-/// there once something is below.
+/// Free cells in which a module can be, in groups of cells that modules can be in at once: no cell
+/// may lie below one that rests on the floor, and none may rest on a floor below which modules then
+/// are.
 std::vector<CellList> open_cells(const model::RobotSpec& whole) {
   std::vector<CellList> groups;
   for (const base::Cell& cell : free_cells(whole)) {
@@ -217,7 +217,7 @@ Places absent_places(const model::Robot& robot, const std::vector<std::int32_t>&
   return places;
 }
 
-/// What the robot says of itself, and what that took it.
+/// Notes the robot's verdict on itself, and the effort that it took.
 void note_verdict(SimulatedNext& simulated, const sim::Simulation& simulation,
                   const RobotEffort& verdict) {
   const sim::SimulationResult result = simulation.result();
@@ -228,7 +228,8 @@ void note_verdict(SimulatedNext& simulated, const sim::Simulation& simulation,
   simulated.faces = difference(effort_of(result), verdict);
 }
 
-/// What one simulation says of the cells beside it; the first one of the robot, too.
+/// Runs one simulation and returns its answers on the cells beside it; the first one judges the
+/// robot, too.
 Places run(const model::Robot& robot, const SimulatedNextOptions& options, bool is_first,
            SimulatedNext& simulated) {
   const sim::SimulationOptions& how = options.simulation;

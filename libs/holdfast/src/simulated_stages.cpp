@@ -21,10 +21,10 @@ constexpr std::array<Stage, plan::kStageCount> kStages = {Stage::kRelease, Stage
 
 std::size_t at(Stage stage) { return static_cast<std::size_t>(stage); }
 
-/// The same stage as modules name it: 0 is none.
+/// The modules' name for a stage; they count from 1, as 0 is none.
 agent::Stage stage_of(Stage stage) { return static_cast<agent::Stage>(at(stage) + 1); }
 
-/// Which limit the connection with the largest load ratio is nearest to.
+/// The limit that the connection with the largest load ratio is nearest to.
 const char* limit_name(const agent::Answer& answer) {
   return model::name(static_cast<model::Limit>(answer.remarks & agent::kLimitBits));
 }
@@ -71,7 +71,7 @@ std::optional<plan::StageId> find_first(const std::vector<SimulatedStep>& steps,
   return std::nullopt;
 }
 
-/// Why a stage has its answer; of one that the robot did not come to, why it did not.
+/// Says why a stage has its answer, or why the robot did not come to it.
 std::string reason_text(const SimulatedStep& step, const agent::Answer& answer) {
   return answer.verdict == agent::Verdict::kNone
              ? fmt::format("not judged: {}", agent::name(step.answer.reason))

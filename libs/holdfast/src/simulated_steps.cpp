@@ -42,7 +42,7 @@ bool has(const Cells& cells, const base::Cell& cell) {
   return std::ranges::find(cells, cell) != cells.end();
 }
 
-/// Those of a list, by cell, that belong to a cell.
+/// The items of a list that belong to a cell.
 template <class Item>
 std::vector<Item> of_cell(const std::vector<Item>& items, const base::Cell& cell) {
   std::vector<Item> found;
@@ -51,8 +51,8 @@ std::vector<Item> of_cell(const std::vector<Item>& items, const base::Cell& cell
   return found;
 }
 
-/// Is the module that a step attaches in a cell as the one that was there before? None that comes
-/// is fixed.
+/// Whether the module that a step attaches in a cell is like the one that was there before. None
+/// that comes is fixed.
 bool is_alike(const model::RobotSpec& robot, const model::Step& step, const base::Cell& cell) {
   return !has(robot.fixed, cell) &&
          of_cell(robot.own_kinds, cell) == of_cell(step.own_kinds, cell) &&
@@ -139,7 +139,7 @@ sim::SimulationOptions options_of(const sim::SimulationOptions& options,
   return mine;
 }
 
-/// Both robots, and the modules that are there.
+/// The two robots, and the modules that are there.
 class Run {
  public:
   Run(const model::Robot& robot, const model::RobotSpec& whole, const io::Sequence& sequence,
@@ -257,7 +257,7 @@ std::string cells_text(const StepChange& change) {
   return text;
 }
 
-/// In rounds where ticks have no length.
+/// The time as text, in rounds if ticks have no length.
 std::string time_or_rounds(const sim::LinkModel& link, sim::Time time) {
   return time_text(link, time, fmt::format("{}", time));
 }

@@ -35,7 +35,7 @@ std::vector<Trial> trials_of(const std::vector<plan::Candidate>& candidates) {
   return trials;
 }
 
-/// By a check of the robot with a fixed module there.
+/// Tries a fixed module in a cell by a check of the whole robot.
 Trial try_fixed(model::RobotSpec spec, const base::Cell& cell, const CheckOptions& options) {
   add_module(spec, cell, Role::kFixed);
   const auto robot = model::Robot::create(spec, options.thread_count);

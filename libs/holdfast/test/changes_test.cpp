@@ -40,7 +40,7 @@ TEST(WithChanges, tells_the_files_plan_first) {
   EXPECT_TRUE(changed.value().attachments.empty());
 }
 
-/// In the order of their times, whatever that of the list.
+/// Changes happen in the order of their times, whatever their order in the list.
 TEST(WithChanges, ends_with_what_is_neither_fulfilled_nor_withdrawn) {
   const auto changed = with_changes(arm(), {{.kind = Kind::kWithdraw, .at = 30, .cell = {2, 1, 0}},
                                             {.kind = Kind::kPlan, .at = 20, .cell = {3, 0, 0}},

@@ -33,7 +33,7 @@ Vector place_of(const model::Robot& robot, std::size_t module) {
                 base::node_place(robot.lattice(), robot.modules()[module].cell));
 }
 
-/// The modules that hang from `last` when it is cut off from `before`.
+/// The modules that are cut off with `last` when it is cut off from `before`.
 std::vector<std::size_t> cut_off(const model::Robot& robot, std::size_t last, std::size_t before) {
   std::vector<std::size_t> cut = {last};
   for (std::size_t i = 0; i < cut.size(); ++i) {

@@ -208,8 +208,8 @@ TEST(Check, is_undecided_where_another_solution_falls) {
   EXPECT_EQ(found.reasons.front().code, verdict::ReasonCode::kStatesDisagree);
 }
 
-/// By the exact law, solved apart from this program, the wall's facet carries 0.28 N along it and
-/// is pressed with 0.036 N; the paper's law, whose open facets may pull, stays within the friction.
+/// The exact law, solved apart from this program, lets the wall's facet carry 0.28 N along it while
+/// 0.036 N press it; the paper's law, whose open facets may pull, stays within the friction.
 TEST(Check, is_undecided_where_the_exact_law_slips) {
   const auto structure = load_text(
       "{\"format\":\"holdfast-structure\",\"version\":2,\"modules\":[{\"cell\":[0,0,0],"

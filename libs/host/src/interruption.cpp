@@ -7,7 +7,7 @@
 namespace holdfast::host {
 namespace {
 
-/// Who is asked on each thread; none is usual.
+/// The object whose `ask` is called on each thread; usually none.
 thread_local const Interruptible* asked = nullptr;
 
 }  // namespace

@@ -24,10 +24,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// As many links the kernel follows, too.
+/// The number of symbolic links that are followed, which is also the kernel's.
 constexpr int kLinkCountMax = 40;
 
-/// More names that are taken are no accident.
+/// The number of names that are tried: that more are taken is no accident.
 constexpr int kNameTrialMax = 16;
 
 base::Error unwritable(int error) {
@@ -139,7 +139,7 @@ class OutputFile::Writer {
     discard();
   }
 
-  /// These return the number of an error, 0 for none.
+  /// These functions return the number of an error, 0 for none.
   int open_copy(int descriptor) {
     std::fflush(stdout);
     return start(::fcntl(descriptor, F_DUPFD_CLOEXEC, 0), false);
@@ -150,7 +150,7 @@ class OutputFile::Writer {
                  is_file);
   }
 
-  /// `old` is what stands there already; nullptr for nothing.
+  /// Opens a file beside the target; `old` is what stands there already, nullptr for nothing.
   int open_temporary(const fs::path& target, const struct stat* old) {
     target_ = target;
     int error = EEXIST;
@@ -202,7 +202,7 @@ class OutputFile::Writer {
     return 0;
   }
 
-  /// With owner, as far as that is allowed, and permission bits of another file.
+  /// Starts with another file's permission bits and, if that is allowed, its owner.
   int start_like(int descriptor, const struct stat& old) {
     [[maybe_unused]] const int is_not_owned = ::fchown(descriptor, old.st_uid, old.st_gid);
     const int error = ::fchmod(descriptor, old.st_mode & 07777U) == 0 ? 0 : errno;

@@ -22,16 +22,16 @@ namespace {
 constexpr std::chrono::microseconds kSpinTime{100};
 constexpr int kSpinCount = 256;  ///< Turns between two looks at the clock.
 
-/// Who has somebody to ask whether to go on sleeps no longer than this: nobody would wake it.
+/// The longest sleep of a thread that has an `ask` to call, as nobody would wake it to do so.
 constexpr std::chrono::microseconds kNap{200};
 
 /// Chunks that are taken at once at most where somebody is asked before each.
 constexpr std::size_t kAskedChunkMax = 64;
 
-/// Thrown in threads whose loop has failed in another one, which nobody hears of.
+/// The exception of threads whose loop has failed in another thread; it never leaves the team.
 struct GivenUp {};
 
-/// False if it is still that value after some time.
+/// Spins while a variable has a value; returns false if it still has after some time.
 template <class Value>
 bool spin_while(const std::atomic<Value>& variable, Value value) {
   const auto end = std::chrono::steady_clock::now() + kSpinTime;
@@ -52,7 +52,7 @@ void wait_while(const std::atomic<Value>& variable, Value value) {
   }
 }
 
-/// Asked once: the answer is read from files.
+/// The number of cores, determined once, as that reads files.
 int core_count() {
   static const auto count = static_cast<int>(std::thread::hardware_concurrency());
   return count;
@@ -76,7 +76,7 @@ class Team::Crew {
   Crew(const Crew&) = delete;
   Crew& operator=(const Crew&) = delete;
 
-  /// As many as were asked for, though the machine may have given fewer.
+  /// The number of threads that was asked for; the machine may have given fewer.
   std::size_t wanted_count() const { return ranges_.size(); }
 
   int thread_count() const { return static_cast<int>(threads_.size()) + 1; }
@@ -86,7 +86,7 @@ class Team::Crew {
   /// Whether its threads are those of this process, and did not stay behind when it was forked.
   bool is_here() const { return process_ == process_number().load(); }
 
-  /// How many forks lie between the program's start and this process.
+  /// The number of forks between the program's start and this process.
   static std::atomic<int>& process_number() {
     static std::atomic<int> number{0};
     return number;
@@ -166,8 +166,8 @@ void Team::Crew::run(std::size_t chunk_count, Task task, const void* context) {
   }
 }
 
-/// What is thrown in a task, such as std::bad_alloc, waits for the end of the loop: the others are
-/// not left behind, and the thread that called is the one that hears of it.
+/// Does a part of the task. An exception, such as std::bad_alloc, waits for the end of the loop:
+/// the other threads are not left behind, and the thread that called receives it.
 void Team::Crew::do_task(std::size_t begin, std::size_t end) noexcept {
   if (has_failed_.load(std::memory_order_acquire)) {
     return;
@@ -180,7 +180,7 @@ void Team::Crew::do_task(std::size_t begin, std::size_t end) noexcept {
   }
 }
 
-/// In a handler of what was thrown.
+/// Keeps the exception that is being handled if it is the first.
 void Team::Crew::note_failure() noexcept {
   if (!has_failed_.exchange(true, std::memory_order_acq_rel)) {
     failure_ = std::current_exception();

@@ -27,8 +27,8 @@ std::array<Slot, kSlotCount> slots;
 
 static_assert(std::atomic<bool>::is_always_lock_free, "read in a signal handler");
 
-/// Only what POSIX allows in a handler. The signal's default action follows: it was restored when
-/// the handler was called, and the signal raised here waits for its end.
+/// Does only what POSIX allows in a handler. The signal's default action follows: it was restored
+/// when the handler was called, and the signal raised here waits for its end.
 extern "C" void remove_files(int signal) {
   for (Slot& slot : slots) {
     if (slot.has_name.load(std::memory_order_acquire)) {

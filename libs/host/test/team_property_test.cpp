@@ -31,7 +31,7 @@ std::vector<std::size_t> sizes(std::mt19937_64& random) {
   return list;
 }
 
-/// Of either sign and over forty decades: a sum in another order has other bits.
+/// Random values of either sign over forty decades: a sum in another order has other bits.
 std::vector<double> random_values(std::size_t count, std::mt19937_64& random) {
   std::uniform_real_distribution<double> exponent(-20, 20);
   std::vector<double> values(count);
@@ -112,7 +112,7 @@ TEST(TeamProperties, a_map_has_a_value_for_every_chunk_in_their_order) {
   }
 }
 
-/// Of several that are thrown one arrives, as it was, when nobody works any more.
+/// One of several exceptions arrives, as it was thrown, when no thread works any more.
 TEST(TeamProperties, one_of_what_is_thrown_arrives_after_all_have_ended) {
   for (int threads = 1; threads <= kThreadMax; ++threads) {
     Team team(threads);

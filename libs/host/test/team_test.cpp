@@ -91,7 +91,7 @@ TEST(Team, ThreadsThatComeLateDoNoHarm) {
   EXPECT_EQ(std::ranges::count(loop_of, 3000U), static_cast<std::ptrdiff_t>(kCount));
 }
 
-/// 1 + 2 + ... + n, shared by a new team.
+/// Whether a new team finds the sum 1 + 2 + ... + n.
 bool adds_up(int thread_count) {
   constexpr std::size_t kCount = 20 * Team::kChunk;
   const double sum = Team(thread_count).sum(kCount, [](std::size_t begin, std::size_t end) {
@@ -104,7 +104,7 @@ bool adds_up(int thread_count) {
   return sum == kCount * (kCount + 1) / 2;
 }
 
-/// They take over each other's threads, or find none.
+/// Teams take over each other's threads, or find none.
 TEST(Team, WorksOneAfterTheOtherAndManyAtOnce) {
   std::atomic<int> wrong_count{0};
   const auto ask = [&] {
@@ -136,9 +136,10 @@ void wait_for_threads(Team& team) {
   });
 }
 
-/// Whose threads did not follow. At the fork they are at rest: a thread that is still starting may
-/// hold a lock of the allocator of clang's sanitizers, which nobody opens again in the new process.
-/// (Unlike the C library's allocator, it knows nothing of forks.)
+/// The threads of a team do not follow it into a forked process. They are at rest at the fork: a
+/// thread that is still starting may hold a lock of the allocator of clang's sanitizers, which
+/// nobody opens again in the new process. (Unlike the C library's allocator, it knows nothing of
+/// forks.)
 TEST(Team, WorksInAForkedProcess) {
   EXPECT_TRUE(adds_up(3));
   auto team = std::make_unique<Team>(3);

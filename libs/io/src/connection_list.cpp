@@ -11,7 +11,7 @@
 namespace holdfast::io {
 namespace {
 
-/// For sorting: what is not a number comes first.
+/// The sort key of a connection: a load ratio that is not a number counts as infinite.
 double rank(const verdict::ConnectionResult& result) {
   return std::isnan(result.load_ratio) ? std::numeric_limits<double>::infinity()
                                        : result.load_ratio;

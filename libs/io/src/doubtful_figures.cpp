@@ -19,7 +19,7 @@ constexpr double kModulusMax = 1.2e6;
 constexpr double kPitchMin = 1;
 constexpr double kPitchMax = 1e4;
 
-/// Beyond the range, and a number that may stand there.
+/// Whether a valid number lies beyond the range.
 bool is_beyond(double value, double lowest, double highest) {
   return value > 0 && std::isfinite(value) && (value < lowest || value > highest);
 }

@@ -7,7 +7,7 @@
 
 namespace holdfast::io {
 
-/// "the edge (0, 0)-(40, 0) mm" of a support polygon, from x and y of its two ends.
+/// Writes "the edge (0, 0)-(40, 0) mm" of a support polygon, from x and y of its two ends.
 std::string edge_text(std::span<const double, 4> ends);
 
 }  // namespace holdfast::io

@@ -17,7 +17,7 @@ constexpr std::size_t kSlipsMax = 2;
 
 char small(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-/// Small letters and digits only, as people remember a name.
+/// The name in small letters and digits only, as people remember it.
 std::string folded(std::string_view name) {
   std::string plain;
   for (const char c : name) {

@@ -17,7 +17,8 @@ namespace {
 #ifdef __cpp_lib_to_chars
 using std::from_chars;
 #else
-/// libc++ before 20 reads integers only. strtod rounds alike, but takes more: signs, hexadecimals.
+/// Reads a number where the library cannot: libc++ before 20 reads integers only. strtod rounds
+/// alike, but takes more: signs, hexadecimals.
 template <class Number>
 std::from_chars_result from_chars(const char* begin, const char* end, Number& number) {
   if constexpr (std::is_integral_v<Number>) {

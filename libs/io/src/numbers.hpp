@@ -11,8 +11,8 @@
 
 namespace holdfast::io {
 
-/// What a number above zero is at least, and a mass at most: what model::Robot allows. Beyond,
-/// products with other numbers leave the range of double.
+/// The least positive number and the largest mass that model::Robot allows. Products with numbers
+/// beyond them leave the range of double.
 inline constexpr double kPositiveMin = 1e-12;
 inline constexpr double kPositiveMax = 1e12;
 
@@ -29,14 +29,15 @@ struct IntegerRange {
 template <class Number>
 std::optional<Number> parse_number(std::string_view text);
 
-/// Three numbers separated by commas.
+/// Reads three numbers separated by commas.
 template <class Number>
 std::optional<std::array<Number, 3>> parse_triple(std::string_view text);
 
 /// The colour that "r,g,b", "#rrggbb" or "0xrrggbb" is.
 std::optional<Color> parse_color(std::string_view text);
 
-/// What stands for three numbers that are no colour: their whole parts, in the range of colours.
+/// The colour that stands for three numbers that are none: their whole parts, in the range of
+/// colours.
 std::optional<Color> nearest_color(std::string_view text);
 
 inline constexpr std::string_view kColorsAllowed =

@@ -46,7 +46,7 @@ CellBox box_near(const model::Robot& robot) {
   return widened(box, kReachOfRobot);
 }
 
-/// What two boxes share; `low` is above `high` somewhere if that is nothing.
+/// The intersection of two boxes; `low` is above `high` somewhere if it is empty.
 CellBox shared(const CellBox& a, const CellBox& b) {
   return {
       .low = {std::max(a.low.x, b.low.x), std::max(a.low.y, b.low.y), std::max(a.low.z, b.low.z)},
@@ -109,7 +109,7 @@ std::vector<ObstacleCell> touched_cells(const model::Robot& robot) {
   return cells;
 }
 
-/// What an obstacle occupies.
+/// The cells that an obstacle occupies.
 class Occupied {
  public:
   explicit Occupied(const model::Obstacle& obstacle)

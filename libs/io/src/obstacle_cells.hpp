@@ -18,9 +18,9 @@ struct ObstacleCell {
 /// More obstacle cells than this are not drawn.
 inline constexpr std::size_t kObstacleCellsMax = 100'000;
 
-/// Which obstacle cells belong into a picture: those that facets touch; of an obstacle that is
-/// touched what is not further than two cells from there, along each coordinate; of any other what
-/// is not further than one from the box around the robot.
+/// The obstacle cells that belong into a picture: those that facets touch; of an obstacle that is
+/// touched, those at most two cells from there along each coordinate; of any other, those at most
+/// one cell from the box around the robot.
 struct NearObstacles {
   std::vector<ObstacleCell> cells;  ///< Each once.
   bool are_too_many = false;        ///< More than kObstacleCellsMax: `cells` is empty.

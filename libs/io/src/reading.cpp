@@ -37,8 +37,9 @@ void warn_of_entry(Reading& reading, const Entry& entry, Names known) {
   }
 }
 
-/// What an attribute of <parameters> that VisibleSim does not know was meant to be, if it is called
-/// as the material's numbers are elsewhere: a mass that went unread would cost a verdict.
+/// The parameter that an attribute of <parameters> was meant to be, if VisibleSim does not know it
+/// but the material's numbers are called so elsewhere: a mass that went unread would cost a
+/// verdict.
 std::optional<std::string> meant_parameter(std::string_view name) {
   std::vector<std::string_view> keys;
   std::ranges::transform(model::kMaterialParameters, std::back_inserter(keys),

@@ -32,8 +32,8 @@ inline constexpr IntegerRange kGridRange = {1, base::kCoordinateMax + 1};
 /// The value of an attribute; nullptr if there is none of this name.
 const std::string* find_attribute(const Attributes& attributes, std::string_view name);
 
-/// What a reader has found so far. The first failure is the one that counts: a reader may go on
-/// with any value and has to look at has_failed() only before it does much more.
+/// Collects what a reader has found so far. Only the first failure counts: a reader may go on with
+/// any value and has to look at has_failed() only before it does much more.
 class Reading {
  public:
   /// Gives the place of a warning; called only for the first of equal warnings.
@@ -69,7 +69,8 @@ class Reading {
   /// Before anything of the material, and take_lattice().
   void take_robot(const std::string& named, const ReadOptions& options, const Where& where);
 
-  /// After all of the material: what of the robot is not known must have been said.
+  /// Fails if the material lacks a figure that is not published for the robot, else fills in the
+  /// section; to be called when the whole material is read.
   void complete_material(const Where& where);
 
   /// The lattice of the document: `named`, what the file says, or what the options say; a failure
@@ -95,7 +96,7 @@ class Reading {
   base::Result<ReadDocument> finish() &&;
 
  protected:
-  /// From the document's cells to those of the file, in which its grid counts.
+  /// The offset from a cell of the document to the same cell in the file and its grid.
   base::Cell shift_;
 
  private:

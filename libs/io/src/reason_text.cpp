@@ -24,7 +24,8 @@ std::string counted(double count, std::string_view one, std::string_view many = 
   return fmt::format("{:.0f} {}", count, host::noun(count == 1, one, many));
 }
 
-/// Which modules carry and are carried only the stage of a step knows.
+/// Writes the cell of a module that carries or is carried; "a cell" but in the stage of a step,
+/// which alone knows it.
 std::string carrier_text(Cells cells, std::size_t index) {
   return index < cells.size() ? model::text(cells[index]) : "a cell";
 }

@@ -7,21 +7,22 @@
 
 #include "holdfast/io/document.hpp"
 
-/// What holds where a file says nothing: Table I of [Piranda 2021], or a robot of the catalogue.
+/// Gives the values that hold where a file says nothing: Table I of [Piranda 2021], or a robot of
+/// the catalogue.
 namespace holdfast::io {
 
 /// The material that a reader begins with, for a robot of the catalogue or, if the name is empty,
 /// none.
 model::Material first_material(const std::string& robot);
 
-/// The material that a document has if it says nothing of it, but for its pitch, on which the
-/// section of beams hangs; not a number for what must be said.
+/// The default material of a document, except for its pitch, on which the section of beams depends;
+/// not a number for what must be said.
 model::Material default_material(const Document& document);
 
 /// The lattice that a document has if it does not say it.
 base::Lattice default_lattice(const std::string& robot);
 
-/// What the robot's figures say of connections.
+/// The robot's figures of connections.
 Connectors robot_connectors(const std::string& robot);
 
 /// Keys of the material that must be said, as the robot's figures are not known, and are not.

@@ -41,7 +41,7 @@ std::size_t utf8_length(std::string_view text) {
   return code >= kCodeLowest[length] && code <= 0x10FFFF && !is_surrogate ? length : 0;
 }
 
-/// Where a text has its first zero byte or is no longer UTF-8.
+/// The offset at which a text has its first zero byte or is no longer UTF-8.
 std::optional<std::size_t> find_bad_byte(std::string_view text) {
   std::size_t offset = 0;
   while (offset < text.size()) {

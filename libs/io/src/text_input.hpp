@@ -16,26 +16,26 @@ namespace holdfast::io {
 inline constexpr std::size_t kStringBytesMax = std::size_t{1} << 20U;
 inline constexpr std::size_t kNameBytesMax = 256;
 
-/// In quotes for a message: printable ASCII ('?' for the rest), cut after 60 characters.
+/// Quotes text for a message: printable ASCII ('?' for the rest), cut after 60 characters.
 std::string excerpt(std::string_view text);
 
-/// Without white space at both ends.
+/// The text without white space at both ends.
 std::string_view trimmed(std::string_view text);
 
-/// Without a byte order mark.
+/// The text without its byte order mark, if it has one.
 std::string_view without_bom(std::string_view text);
 
-/// "line 12", for Error::where. Takes time proportional to the offset.
+/// Writes "line 12", for Error::where. Takes time proportional to the offset.
 std::string line_at(std::string_view text, std::size_t offset);
 
 /// An input that is blank, too large, not UTF-8 or holds a zero byte, whatever its format.
 std::optional<base::Error> find_input_fault(std::string_view text);
 
-/// Why a string cannot be kept, such as "is not UTF-8" or "holds the control character 0x07". Tabs
-/// and line feeds can; what passes here comes back unchanged from both formats.
+/// Says why a string cannot be kept, such as "is not UTF-8" or "holds the control character 0x07".
+/// Tabs and line feeds can; what passes here comes back unchanged from both formats.
 std::optional<std::string> find_string_fault(std::string_view text);
 
-/// Why an element or attribute of XML cannot have this name.
+/// Says why an element or attribute of XML cannot have this name.
 std::optional<std::string> find_name_fault(std::string_view name);
 
 /// Whether a line begins as those do that a version control system leaves behind.

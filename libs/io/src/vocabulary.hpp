@@ -11,7 +11,7 @@
 #include "holdfast/io/extension.hpp"
 #include "holdfast/model/material.hpp"
 
-/// What things are called in files, once for all readers and writers.
+/// Names things in files, once for all readers and writers.
 namespace holdfast::io {
 
 inline constexpr std::string_view kJsonFormatName = "holdfast-structure";
@@ -20,7 +20,7 @@ inline constexpr int kJsonVersionMax = 2;
 /// The root element of VisibleSim's newer files, around all others.
 inline constexpr const char* kRootElement = "vs";
 
-/// Why a structure of datoms cannot be read.
+/// The reason why a structure of datoms cannot be read.
 inline constexpr const char* kNoDatoms =
     "datoms sit in a skewed face-centred lattice and change their shape, which this program does "
     "not know";
@@ -40,7 +40,7 @@ inline constexpr const char* kObstacleElement = "obstacle";
 inline constexpr auto kObstacleAttributes =
     std::to_array<std::string_view>({"position", "color", "hold", "friction", "to"});
 
-/// How a module is turned in its cell, of VisibleSim's catoms and hexanodes.
+/// The attribute for how a module is turned in its cell, of VisibleSim's catoms and hexanodes.
 inline constexpr const char* kOrientation = "orientation";
 
 /// Attributes of ours for what a module has of its own, and the child of <holdfast> with what else
@@ -49,10 +49,12 @@ inline constexpr const char* kOwnKindAttribute = "holdfastKind";
 inline constexpr const char* kOwnMassAttribute = "holdfastMass";
 inline constexpr const char* kExtensionElement = "extension";
 
-/// Its attribute `computed` with this value says that a writer had to make gridSize up.
+/// The value of the attribute `computed` of <holdfast> that says that a writer had to make gridSize
+/// up.
 inline constexpr const char* kGridSize = "gridSize";
 
-/// Its attribute that says what a writer has added to every cell and to the support level.
+/// The attribute of <holdfast> that says what a writer has added to every cell and to the support
+/// level.
 inline constexpr const char* kShift = "shift";
 
 constexpr bool is_one_of(std::string_view name, std::initializer_list<std::string_view> names) {
@@ -85,7 +87,7 @@ inline constexpr auto kTopKeys = std::to_array<std::string_view>(
     {"$schema", "format", "version", "name", "description", "support_z", "material", "modules",
      "planned", "later_steps", "known_answer", "visiblesim"});
 
-/// Those that only version 2 has, alone and with all others.
+/// The keys that only version 2 has.
 inline constexpr auto kExtensionKeys = std::to_array<std::string_view>(
     {"robot", "lattice", "floor", "gravity_m_s2", "kinds", "obstacles", "loads", "steps"});
 inline constexpr auto kAllTopKeys = joined(kTopKeys, kExtensionKeys);
@@ -103,7 +105,7 @@ inline constexpr auto kClassStrengthKeys =
     std::to_array<std::string_view>({"strength_vertical_n", "strength_lateral_n"});
 inline constexpr auto kClassKeys = std::to_array<std::string_view>({"vertical", "lateral"});
 
-/// Width of the facets of modules that are no cubes, of the material.
+/// The key of the material for the width of the facets of modules that are no cubes.
 inline constexpr std::string_view kFootKey = "foot_mm";
 
 /// The parameters in which a kind of modules may differ from the material.
@@ -238,12 +240,12 @@ constexpr bool is_simulation_attribute(std::string_view name) {
                           "angle", "rotation"});
 }
 
-/// Children of <world> that are not scenery.
+/// Whether a child of <world> is not scenery.
 constexpr bool is_structural_element(std::string_view name) {
   return is_one_of(name, {"blockList", "targetList", kObstacleListElement, kOwnElement});
 }
 
-/// Children of <world> that may be there without a warning.
+/// Whether a child of <world> may be there without a warning.
 constexpr bool is_scenery_element(std::string_view name) {
   return is_one_of(name, {"camera", "spotlight", "customization"});
 }

@@ -48,7 +48,7 @@ std::string repeated(std::string_view unit, std::size_t count) {
   return text;
 }
 
-/// In line 3 of a world.
+/// A world with these blocks in line 3.
 std::string xml(std::string_view blocks) {
   return "<parameters/>\n<world gridSize=\"1000,1000,1000\"><blockList>\n" + std::string(blocks) +
          "</blockList></world>";

@@ -44,7 +44,7 @@ std::string binary(const Document& document) {
   return out.str();
 }
 
-/// What a robot is made of, in no order.
+/// The parts of a robot, in no order.
 auto content(const Document& document) {
   const model::RobotSpec spec = make_spec(document).value();
   std::set<std::tuple<Cell, int>> kinds;

@@ -68,7 +68,7 @@ class RandomDocument {
     return document;
   }
 
-  /// The same with what only version 2 of holdfast JSON says.
+  /// Returns the document of make() with members that only version 2 of holdfast JSON has.
   Document make_extended() {
     Document document = make();
     Extension& extension = document.extension;
@@ -167,7 +167,7 @@ class RandomDocument {
     return below(2) == 0 ? std::nullopt : std::optional(Color{part(), part(), part()});
   }
 
-  /// Everything that markup, quotes, escapes and lines could break.
+  /// A text with everything that markup, quotes, escapes and lines could break.
   std::string text() {
     constexpr std::array<const char*, 14> kPieces = {
         "a",   "Z9", "<",  ">", "&amp;", "\"", "'", "\\", "\\u0041", "\xC3\xA9", "\xF0\x9F\xA4\x96",
@@ -219,7 +219,7 @@ TEST(Conversion, keeps_any_document_of_version_2) {
   }
 }
 
-/// Two more ways to say which cells obstacles are in: boxes that VisibleSim is shown every cell of,
+/// Obstacles can say their cells in two more ways: boxes of which VisibleSim is shown every cell,
 /// and neighbours in a list that differ in nothing but that they are two.
 TEST(Conversion, keeps_obstacles_apart) {
   Document document;

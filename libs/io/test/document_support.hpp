@@ -10,16 +10,16 @@
 
 #include "holdfast/io/document.hpp"
 
-/// What the tests of readers and writers share.
+/// Serves the tests of readers and writers.
 namespace holdfast::io::document_test {
 
-/// What was read; a failed expectation that says why, and nothing, if it was refused.
+/// The document that was read; if it was refused, a failed expectation that says why, and nothing.
 inline ReadDocument accepted(base::Result<ReadDocument> read) {
   EXPECT_TRUE(read) << read.error().where << ": " << read.error().message;
   return read ? std::move(read).value() : ReadDocument{};
 }
 
-/// holdfast JSON: these members, after the keys that must be there.
+/// A holdfast JSON text with these members, after the keys that must be there.
 inline std::string json(std::string_view members) {
   return R"({"format": "holdfast-structure", "version": 1, )" + std::string(members) + "}";
 }

@@ -117,7 +117,7 @@ TEST(Version2, is_written_for_people) {
 )");
 }
 
-/// So that programs that read version 1 only read what they can understand.
+/// Programs that read version 1 only read what they can understand.
 TEST(Version2, is_written_only_where_version_1_does_not_say_it_all) {
   const Document document = read(R"("lattice": "cubic", "gravity_m_s2": [0, 0, -1.62],
       "modules": [[0,0,0]], "kinds": {}, "obstacles": [], "loads": [], "steps": [], "floor": {})");
@@ -222,8 +222,8 @@ TEST(Version2, becomes_what_a_robot_is_made_from) {
   EXPECT_TRUE(spec.own_kinds.empty());
 }
 
-/// Eq. (17) where a file says nothing of connections; its numbers where it does, by kind, by class
-/// and by pair of directions.
+/// Limits are those of Eq. (17) where a file says nothing of connections, and its numbers where it
+/// does, by kind, by class and by pair of directions.
 TEST(Version2, has_limits_by_kind_and_direction) {
   const model::RobotSpec spec = spec_of(R"("material": {"mass_kg": 0.1, "bending": "round",
         "lever_mm": {"vertical": 3}, "shear_strength_n": [1, 2, null], "friction": 0.25},
@@ -262,7 +262,7 @@ TEST(Version2, has_limits_by_kind_and_direction) {
   EXPECT_EQ(spec.own_kinds[1].kind, 2);
 }
 
-/// So that a robot all of whose modules weigh the same is computed as such.
+/// A robot whose modules all weigh the same is computed as such.
 TEST(Version2, has_own_masses_only_where_they_differ) {
   const model::RobotSpec spec = spec_of(R"("kinds": {"heavy": {"mass_kg": 0.3}}, "modules": [
       {"cell": [0,0,0], "mass_kg": 0.06106}, {"cell": [1,0,0], "mass_kg": 0.3, "kind": "heavy"},
@@ -281,7 +281,7 @@ TEST(Version2, is_computed_where_it_says_what_a_cube_on_a_floor_is_anyway) {
   EXPECT_TRUE(robot.value().has_default_connectors());
 }
 
-/// Beyond this, products with other numbers leave the range of double.
+/// Larger numbers make products with others leave the range of double.
 TEST(Version2, has_no_numbers_that_cannot_be_computed_with) {
   const auto refused = [](std::string_view members, std::string_view where) {
     const auto result = read_json(version_2(R"("modules": [[0,0,0]], )" + std::string(members)));

@@ -345,7 +345,7 @@ TEST(KnownNames, names_of_visiblesim_are_read_in_any_case) {
   }
 }
 
-/// Such as mass="61": the robot would be as heavy as Blinky Blocks, whatever the file means.
+/// A robot with mass="61" would be as heavy as Blinky Blocks, whatever the file means.
 TEST(KnownNames, a_number_of_the_material_is_not_lost_by_what_parameters_call_it) {
   const auto refusal = [](const std::string& name) {
     const auto read = read_visiblesim("<parameters " + name +

@@ -20,7 +20,7 @@ struct NamedLattice {
   const char* name;
   base::Lattice lattice;
 
-  /// How a failure names it.
+  /// Names the lattice in failures.
   friend void PrintTo(const NamedLattice& named, std::ostream* out) { *out << named.name; }
 };
 

@@ -76,7 +76,7 @@ TEST(MaterialParameters, have_the_ranges_of_the_schema) {
   }
 }
 
-/// Version 2 of one module, with a member more.
+/// Whether version 2 of one module with one more member is read.
 bool is_read(const std::string& key, const nlohmann::json& value,
              const nlohmann::json& gravity = nullptr) {
   nlohmann::json root = {{"format", "holdfast-structure"}, {"version", 2}};

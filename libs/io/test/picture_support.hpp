@@ -226,7 +226,7 @@ inline std::set<std::string> fills(const Picture& picture, const std::string& gr
   return found;
 }
 
-/// What the text of the label says, between its box and the end of the group.
+/// The text of the label, between its box and the end of the group.
 inline std::string label(const Picture& picture) {
   return picture.one("callout").child_value("text");
 }

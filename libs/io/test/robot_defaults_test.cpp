@@ -70,7 +70,8 @@ TEST(RobotDefaults, give_way_to_what_the_file_says_of_connections) {
   EXPECT_EQ(spec.value().kinds[0].connectors[0].lever_mm, 7);
 }
 
-/// The same section as that of Blinky Blocks, ten times as small: areas by 100, moments by 10^4.
+/// The section is that of Blinky Blocks at a tenth of their size: areas are divided by 100, moments
+/// by 10^4.
 TEST(RobotDefaults, make_the_section_of_beams_as_wide_as_the_pitch) {
   const model::Material material =
       read(R"("robot": "soldercubes", "material": {"pitch_mm": 4, "mass_kg": 1})").material;
@@ -127,7 +128,7 @@ TEST(RobotDefaults, are_those_of_the_robot_that_is_asked_for) {
   EXPECT_EQ(xml.material.mass_kg, 0.35);
 }
 
-/// So that the page for people and the schema for editors say what the program has.
+/// The page for people and the schema for editors say what the program has.
 TEST(RobotDefaults, are_documented_with_every_source) {
   const std::string page = document_text("robots.md");
   const std::string schema = document_text("structure.schema.json");

@@ -151,8 +151,8 @@ Json some_of(const Json& whole, std::size_t chosen) {
   return part;
 }
 
-/// Which members to choose of so many: all choices but all of them; of many members none, each
-/// alone and each left out.
+/// The members to choose of so many: if there are few, all choices but all of them; if there are
+/// many, none, each alone and each left out.
 std::vector<std::size_t> choices(std::size_t count) {
   const std::size_t all = (std::size_t{1} << count) - 1;
   std::vector<std::size_t> list;

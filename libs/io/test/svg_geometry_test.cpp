@@ -114,7 +114,7 @@ Frame lattice_frame(const std::vector<Cell>& cells) {
   return frame;
 }
 
-/// Where a point (u, v) of the lattice is on a picture of these cells.
+/// The view of these cells, in which a point (u, v) of the lattice has its place on the picture.
 class View {
  public:
   View(const Picture& picture, const std::vector<Cell>& cells) : lattice_(lattice_frame(cells)) {

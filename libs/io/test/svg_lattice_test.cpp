@@ -91,7 +91,7 @@ std::string first_met(const base::Lattice& lattice, const std::vector<Cell>& cel
   return met;
 }
 
-/// What one module's group draws: polygons, and the largest circle.
+/// The drawing of one module's group: polygons, and the largest circle.
 struct Drawn {
   std::string cell;
   std::vector<Polygon> polygons;
@@ -105,7 +105,7 @@ struct Drawn {
   }
 };
 
-/// In the picture's order, that is from back to front.
+/// The drawn modules in the picture's order, which is from back to front.
 std::vector<Drawn> drawn_modules(const Picture& picture, const std::string& group = "module") {
   std::vector<Drawn> all;
   for (const pugi::xml_node& module : picture.all(group)) {
@@ -411,7 +411,7 @@ TEST(SvgLattice, what_facets_touch_is_drawn_even_if_obstacles_are_not_given) {
   EXPECT_NE(picture.texts("legend").find("share"), 0U);
 }
 
-/// Of one prism on the floor, whose facet is in a state.
+/// The picture of one prism on the floor whose facet is in this state.
 Picture standing_prism(const mechanics::ContactState& state) {
   model::RobotSpec spec = {.existing = {{0, 0, 0}}};
   spec.lattice = base::kHexagonalPrism;

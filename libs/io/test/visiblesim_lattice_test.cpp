@@ -234,8 +234,7 @@ TEST(VisibleSimObstacles, hold_the_modules_beside_them) {
   EXPECT_TRUE(robot.value().has_bonded_facets());
 }
 
-/// Before they had a meaning, they were kept as scenery; files that were converted then still are
-/// read.
+/// Older versions kept obstacles as scenery; files that they converted can still be read.
 TEST(VisibleSimObstacles, are_found_in_the_scenery_of_older_files) {
   const Document document =
       accepted(read_json(document_test::json(R"("modules": [[0,0,2]], "visiblesim": {"scenery": [

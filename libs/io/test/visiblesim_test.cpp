@@ -260,7 +260,7 @@ TEST(VisibleSim, a_box_that_can_be_counted_in_mm_and_in_cells_is_refused_unless_
   }
 }
 
-/// Its loops run to the last layer of the grid, without it (simulator.cpp, March 2025).
+/// VisibleSim's loops run to the last layer of the grid, without it (simulator.cpp, March 2025).
 TEST(VisibleSim, what_it_leaves_out_of_a_box_at_the_end_of_the_grid_is_noted) {
   const auto notes = [](std::string_view box) {
     return warning_of(

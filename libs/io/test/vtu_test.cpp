@@ -265,7 +265,7 @@ TEST(Vtu, a_single_module_has_no_lines) {
   EXPECT_NEAR(grid.triple("ground_force_n", 0)[2], kWeight, 1e-8);
 }
 
-/// Of a robot whose arrays have many blocks: 6,000 modules, 48,000 corners of 24 bytes.
+/// The arrays have many blocks: 6,000 modules, 48,000 corners of 24 bytes.
 TEST(Vtu, large_arrays_are_whole_whatever_the_number_of_threads) {
   const model::Robot robot = make({.existing = box(10, 10, 60)});
   const verdict::Assessment assessment = without_loads(robot);
@@ -302,7 +302,7 @@ TEST(Vtu, comes_whole_through_a_stream_without_positions) {
   EXPECT_EQ(pipe.text, text_of(robot, assessment));
 }
 
-/// What XML has a meaning for stands in it as an entity.
+/// Characters that have a meaning in XML stand there as entities.
 TEST(Vtu, a_series_names_its_files) {
   const std::vector<SeriesFile> files = {{.time = 0, .part = 0, .name = "a&b_0.vtu"},
                                          {.time = 1, .part = 1, .name = "\"<é>.vtu"}};

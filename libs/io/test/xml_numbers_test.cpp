@@ -25,7 +25,7 @@ std::string file_with(const std::string& parameters, const std::string& own,
       parameters, block, own, answer);
 }
 
-/// Read or made into a robot, whichever refuses it.
+/// The error of reading a file, or else of making a robot of it.
 base::Error error_of(const std::string& file) {
   const auto read = read_visiblesim(file);
   if (!read) {
@@ -79,7 +79,8 @@ TEST(XmlNumbers, of_all_other_attributes_are_named_too) {
   }
 }
 
-/// Such as the section of a robot of which none is published: it is out of its range first.
+/// A figure that follows from the pitch, such as a section that is not published, is out of its
+/// range first.
 TEST(XmlNumbers, that_follow_from_the_pitch_say_so) {
   int count = 0;
   for (const model::CatalogueRobot& robot : model::robot_catalogue()) {
@@ -97,8 +98,8 @@ TEST(XmlNumbers, that_follow_from_the_pitch_say_so) {
   EXPECT_GT(count, 0);
 }
 
-/// Its text is JSON, so there a pointer is right, with the element that it begins in; what else is
-/// wrong with the file is in its attributes.
+/// The text of the extension is JSON, so a pointer within its element is right for what is wrong
+/// there; what else is wrong with the file is in its attributes.
 TEST(XmlNumbers, of_the_extension_are_named_within_it) {
   const std::string extension = R"({"floor": {"friction": 1}, "gravity_m_s2": [0, 1, -9],
       "material": {"strength_n": 1, "lever_mm": [1, 2, 3], "friction": {"vertical": 1}},
@@ -159,7 +160,7 @@ TEST(XmlNumbers, steps_are_named_as_the_file_writes_them) {
                                 "<target format=\"grid\">, number 2", "/steps/0 in <extension>"}));
 }
 
-/// VisibleSim's files have such steps at the end, where they say nothing.
+/// VisibleSim's files may end with steps without cells, which say nothing there.
 TEST(XmlNumbers, a_step_without_cells_before_another_is_refused_at_its_line) {
   const auto read = [](const std::string& targets) {
     std::string file = file_with("", "", "");

@@ -29,7 +29,7 @@ bool is_regularised(const GroundFacet<Real>& facet) {
   return facet.law == ContactLaw::kRegularised;
 }
 
-/// Force at the facet centre to force at the node: the torques gain the lever of the force.
+/// Moves a force from the facet centre to the node: the torques gain the lever of the force.
 template <class Real>
 Vec6<Real> at_node(const GroundFacet<Real>& facet, Vec6<Real> force) {
   force[kMx] += force[kFy] * facet.lever;
@@ -93,7 +93,7 @@ ContactState unilateral_state(const GroundFacet<Real>& facet, const Vec6<Real>& 
   return state;
 }
 
-/// Eqs. (10)-(12).
+/// The force of the paper's law, Eqs. (10)-(12).
 template <class Real>
 Vec6<Real> regularised_force(const GroundFacet<Real>& facet, ContactState state,
                              const Vec6<Real>& trial) {

@@ -18,7 +18,7 @@ int sign_of_products(Real p, Real q, Real r, Real s) {
   return sum > 0 ? 1 : sum == 0 ? 0 : -1;
 }
 
-/// Exact for all that has_direction() admits.
+/// The sign of p q + r s, exact for all that has_direction() admits.
 template <>
 int sign_of_products(std::int64_t p, std::int64_t q, std::int64_t r, std::int64_t s) {
   constexpr std::int64_t kSmall = std::int64_t{1} << 30U;
@@ -37,7 +37,8 @@ int sign_of_products(std::int64_t p, std::int64_t q, std::int64_t r, std::int64_
   return (high >> 63U) != 0 ? -1 : (high | low) != 0 ? 1 : 0;
 }
 
-/// Exact for all that has_direction() admits: without roots as large as whole numbers.
+/// The sign of p q + r s, exact for all that has_direction() admits: numbers without roots may be
+/// as large as whole numbers.
 template <>
 int sign_of_products(RootThree p, RootThree q, RootThree r, RootThree s) {
   const bool has_roots = (p.roots() | q.roots() | r.roots() | s.roots()) != 0;
@@ -55,7 +56,7 @@ int sign_of_dot(PlanVector<Real> a, PlanVector<Real> b) {
   return sign_of_products(a.x, b.x, a.y, b.y);
 }
 
-/// Is v in the closed convex cone from `first` counter-clockwise to `last`?
+/// Whether v is in the closed convex cone from `first` counter-clockwise to `last`.
 template <class Real>
 bool is_in_gap(const SafeAngles<Real>& angles, PlanVector<Real> v) {
   const PlanVector<Real>& first = angles.gap_first;
@@ -64,7 +65,7 @@ bool is_in_gap(const SafeAngles<Real>& angles, PlanVector<Real> v) {
          (sign_of_dot(first, v) > 0 || sign_of_dot(last, v) > 0);
 }
 
-/// Neither zero nor a NaN nor so large that products of two such vectors overflow.
+/// Whether a vector is neither zero nor a NaN nor so large that products of two such overflow.
 template <class Real>
 bool has_direction(PlanVector<Real> v) {
   const Real square = v.x * v.x + v.y * v.y;
@@ -89,7 +90,7 @@ bool has_direction(PlanVector<RootThree> v) {
   return is_good;
 }
 
-/// Can a vector and a half width be added without overflow? Reals tell by themselves.
+/// Whether a vector and a half width can be added without overflow, which reals tell by themselves.
 template <class Real>
 bool is_finite_facet(PlanVector<Real>, Real) {
   return true;

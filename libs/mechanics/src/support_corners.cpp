@@ -5,7 +5,8 @@
 namespace holdfast::mechanics {
 namespace {
 
-/// Exact: coordinates are below 2^22, so products fit in 64 bits.
+/// Whether three corners lie on one line; exact, as coordinates below 2^22 have products of 64
+/// bits.
 bool are_collinear(const Corner& a, const Corner& b, const Corner& c) {
   const std::int64_t ux = b.x - a.x;
   const std::int64_t uy = b.y - a.y;
@@ -52,7 +53,7 @@ bool may_be_collinear(const Corner& a, const Corner& b, const Corner& c) {
   return square(cross) <= kRounding * (square(u) + square(v));
 }
 
-/// Two corners this near are one.
+/// The distance up to which two corners are one.
 constexpr double kSameCorner = 4;
 
 void add_rounded(SupportCorners& set, const Corner& corner) {

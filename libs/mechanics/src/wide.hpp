@@ -6,7 +6,8 @@
 
 namespace holdfast::mechanics {
 
-/// 128 bits in two's complement, without the compiler's own: no module's processor has them.
+/// A number of 128 bits in two's complement, without the compiler's own type, which no module's
+/// processor has.
 struct Wide {
   std::uint64_t high = 0;
   std::uint64_t low = 0;

@@ -115,8 +115,8 @@ TYPED_TEST(Beam, takes_the_force_k11_u_p_plus_k12_u_q) {
   }
 }
 
-/// Exactly, as both ends use the same products. A signed permutation of Eq. (1) keeps its ten
-/// nonzeros.
+/// The blocks are symmetric exactly, as both ends use the same products. A signed permutation of
+/// Eq. (1) keeps its ten nonzeros.
 TYPED_TEST(Beam, has_symmetric_blocks_with_ten_nonzeros) {
   const auto beam = lopsided_beam<TypeParam>();
   for (const Direction direction : kDirections) {

@@ -137,8 +137,8 @@ TYPED_TEST(GroundContact, has_the_derivative_of_its_force_as_tangent) {
   expect_tangent_is_derivative<TypeParam>(ContactLaw::kUnilateral, false);
 }
 
-/// What the unilateral contact did, seen from the facet centre: `force` (weak spring excluded) and
-/// the rigid motion `v` of the facet that the beam was spared.
+/// The action of the unilateral contact, seen from the facet centre: `force` (weak spring excluded)
+/// and the rigid motion `v` of the facet that the beam was spared.
 struct Release {
   Vec6<double> force{};
   Vec6<double> v{};

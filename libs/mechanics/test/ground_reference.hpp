@@ -66,7 +66,7 @@ inline Vec6<double> difference(Vec6<double> a, const Vec6<double>& b) {
   return a;
 }
 
-/// Between a and b, on the grid of float.
+/// A vector between a and b, on the grid of float.
 inline Vec6<double> blend(const Vec6<double>& a, const Vec6<double>& b, double weight_of_b) {
   Vec6<double> u{};
   for (std::size_t i = 0; i < 6; ++i) {

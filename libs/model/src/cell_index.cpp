@@ -7,7 +7,8 @@
 namespace holdfast::model {
 namespace {
 
-/// Up to here the table is smaller than the slots would be, or not much larger.
+/// The number of places per cell up to which the table is smaller than the slots, or not much
+/// larger.
 constexpr std::uint64_t kPlacesPerCell = 16;
 
 std::uint32_t width(std::int32_t low, std::int32_t high) {

@@ -7,8 +7,8 @@
 namespace holdfast::model {
 namespace {
 
-/// Of newtons, whose squares neither overflow nor vanish: std::hypot, which sees to that, takes
-/// ten times as long.
+/// The length of a vector in newtons, whose squares neither overflow nor vanish: std::hypot, which
+/// guards against both, takes ten times as long.
 double length(double x, double y) { return std::sqrt(x * x + y * y); }
 
 }  // namespace

@@ -51,8 +51,8 @@ std::uint32_t draw_below(std::mt19937& twister, std::uint32_t bound) {
   return value;
 }
 
-/// random.Random(1): the seed goes through init_by_array with the one-word key {1}, which the
-/// standard's seeding from a sequence does not do.
+/// Python's random.Random(1): the seed goes through init_by_array with the one-word key {1}, which
+/// the standard's seeding from a sequence does not do.
 std::mt19937 python_twister() {
   constexpr std::size_t kSize = 624;
   std::array<std::uint32_t, kSize> state{};
@@ -149,7 +149,7 @@ Cells ball(std::int32_t size) {
   return cells;
 }
 
-/// a * b, or the largest number.
+/// The product a * b, or the largest number if that overflows.
 std::size_t times(std::size_t a, std::size_t b) {
   std::size_t product = 0;
   return __builtin_mul_overflow(a, b, &product) ? ~std::size_t{0} : product;

@@ -76,7 +76,7 @@ double foot_half_width(const RobotSpec& spec) {
   return spec.foot_mm.value_or(material.pitch_mm / 2) / 2;
 }
 
-/// Weight, and its moment about the carrier's node.
+/// The weight of a mass, and its moment about the carrier's node.
 Loads::Load carried_load(const CarriedMass& carried, const std::array<double, 3>& gravity) {
   const auto& [x, y, z] = carried.offset_mm;
   const double fx = carried.mass_kg * gravity[0];

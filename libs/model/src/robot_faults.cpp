@@ -16,7 +16,8 @@ namespace {
 
 using base::Cell;
 
-/// Beyond this, products with other parameters leave the range of double (as in Material).
+/// The largest number: products with other parameters of larger ones leave the range of double (as
+/// in Material).
 constexpr double kNumberMax = 1e12;
 
 std::optional<std::string> find_size_fault(const RobotSpec& spec) {
@@ -159,7 +160,8 @@ std::optional<std::string> find_kind_fault(const RobotSpec& spec) {
   return std::nullopt;
 }
 
-/// In what only the general case has.
+/// Finds a fault in what the paper's robots do not have: gravity, friction, kinds, obstacles,
+/// payloads and masses.
 std::optional<std::string> find_general_fault(const RobotSpec& spec) {
   auto fault = find_sheet_fault(spec);
   fault = fault ? fault : find_gravity_fault(spec);
@@ -184,7 +186,7 @@ std::optional<std::string> find_general_fault(const RobotSpec& spec) {
   return fault;
 }
 
-/// Which modules hang together [Galler and Fischer 1964].
+/// Finds which modules are connected with each other [Galler and Fischer 1964].
 class Parts {
  public:
   explicit Parts(std::size_t count) : parent_(count) {
@@ -270,8 +272,8 @@ std::optional<std::string> find_connection_fault(const Connections& connections,
 
 namespace {
 
-/// Where a module rests on a floor, that bars all: nobody may be below it, not even what hangs from
-/// a fixed module.
+/// Finds a module below one that rests on a floor: no module may be below the floor, not even one
+/// that is held by a fixed module.
 std::optional<std::string> find_module_below_floor(const Robot& robot) {
   const auto level = robot.barring_level();
   if (!level) {
@@ -292,7 +294,7 @@ std::optional<std::string> find_module_below_floor(const Robot& robot) {
       text(below->cell), text(standing->cell), *level);
 }
 
-/// What would hold a robot that nothing holds.
+/// Says what would hold a robot that nothing holds.
 std::string missing_support(const Robot& robot, const RobotSpec& spec) {
   const auto existing = robot.modules().first(robot.modules().size() - robot.planned_count());
   const auto lowest =

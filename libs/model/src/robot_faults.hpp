@@ -8,19 +8,20 @@
 
 #include "holdfast/model/robot.hpp"
 
-/// What can be wrong with a robot. Each function returns the first fault that it finds: what was
-/// found, where, and what is allowed.
+/// Finds what can be wrong with a robot. Each function returns the first fault that it finds: what
+/// was found, where, and what is allowed.
 namespace holdfast::model {
 
-/// In numbers and coordinates, of anything that a spec has.
+/// Finds a fault in the numbers and coordinates of a spec.
 std::optional<std::string> find_number_fault(const RobotSpec& spec);
 
-/// In what hangs together: existing modules among each other, then planned ones with them.
+/// Finds existing modules that are not connected with each other, then planned ones that are not
+/// connected with them.
 std::optional<std::string> find_connection_fault(const Connections& connections,
                                                  std::span<const Module> modules,
                                                  std::size_t existing_count);
 
-/// In what holds the robot.
+/// Finds a fault in what holds the robot.
 std::optional<std::string> find_support_fault(const Robot& robot, const RobotSpec& spec);
 
 }  // namespace holdfast::model

@@ -50,7 +50,7 @@ TEST(CellIndex, tells_coordinates_and_signs_apart) {
   EXPECT_EQ(index.find({-1, -2, -3}), CellIndex::kNone);
 }
 
-/// Full to the number of cells that it was made for, from dense to scattered.
+/// Fills the index with the number of cells that it was made for, from dense to scattered.
 void compare_with_map(std::uint64_t width, CellIndex index) {
   base::Rng rng(1);
   std::map<Cell, std::int32_t> expected;

@@ -59,7 +59,7 @@ TEST(Families, are_found_by_name) {
 
 }  // namespace
 
-/// Of all boxes of small structures, by walking through their cells.
+/// Random boxes in small structures are denied only if a walk through their cells finds no module.
 TEST(Families, are_denied_only_where_no_cell_is) {
   std::size_t denied_count = 0;
   for (const FamilyInfo& info : families()) {

@@ -76,7 +76,8 @@ TEST(RobotCatalogue, has_blinky_blocks_as_the_paper_has_them) {
   EXPECT_EQ(material, Material{});
 }
 
-/// Of a square of 10 mm: 100 mm^2, 10^4 / 12 mm^4, and 2.25 times the fourth power of half of it.
+/// A square of 10 mm has 100 mm^2, 10^4 / 12 mm^4, and 2.25 times the fourth power of half its
+/// side.
 TEST(RobotCatalogue, fills_what_is_open_of_the_section_only) {
   Material material = catalogue_material(*find_robot("soldercubes"));
   material.pitch_mm = 10;

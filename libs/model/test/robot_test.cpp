@@ -78,7 +78,7 @@ TEST(Robot, box_has_a_connection_for_every_inner_face) {
   }
 }
 
-/// Grown at random, the later half planned.
+/// The robots grow at random; the later half of their modules is planned.
 TEST(Robot, connects_every_pair_of_face_neighbours_once_planned_ones_included) {
   base::Rng rng(1);
   std::vector<Cell> cells = {{-2, 5, 0}};

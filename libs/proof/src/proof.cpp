@@ -43,7 +43,7 @@ constexpr int kPassMax = 8;
 constexpr double kRoundings = 4;
 constexpr double kGain = 0.3;
 
-/// So many of all spare bits of a number are left for the solution to grow.
+/// The number of spare bits that are left for the solution to grow.
 constexpr int kSpareBits = 6;
 
 Law law_of(ContactModel model) {
@@ -74,7 +74,7 @@ certificate::Material material_of(const model::Material& material) {
           .gamma = material.contact_gamma};
 }
 
-/// Everything but the fields.
+/// The certificate without its fields.
 Certificate certificate_of(const model::Robot& robot, const Assessment& assessment) {
   Certificate made;
   made.law = law_of(assessment.contact_model);
@@ -94,7 +94,7 @@ Certificate certificate_of(const model::Robot& robot, const Assessment& assessme
   return made;
 }
 
-/// Why there is nothing to prove, or empty.
+/// Says why there is nothing to prove, or empty.
 std::string find_obstacle(const model::Robot& robot, const Assessment& assessment) {
   if (!assessment.is_stable) {
     return "the robot topples, which the rigid body decides in integers";
@@ -149,7 +149,7 @@ class Prover {
   }
 
  private:
-  /// As many bits after the point as the largest displacement leaves room for.
+  /// The number of bits after the point for which the largest displacement leaves room.
   int bits_for(const std::vector<Vec>& displacement) const {
     double largest = 1;
     for (const Vec& u : displacement) {
@@ -161,12 +161,13 @@ class Prover {
     return std::clamp(room, 0, certificate::kBitsMax);
   }
 
-  /// From mm and rad to the certificate's unit.
+  /// Converts mm and rad to the certificate's unit.
   double scaled(double displacement, std::size_t k) const {
     return (k < 3 ? displacement : displacement * lever_mm_) / displacement_mm_;
   }
 
-  /// In 106 bits: of a slender robot the loads are in the digits that a double has not.
+  /// Takes the displacements in 106 bits: the loads of a slender robot are in the digits that a
+  /// double does not have.
   void take_displacements() {
     const double unit = std::ldexp(displacement_mm_, -proof_.certificate.bits);
     for (const certificate::Six& six : proof_.certificate.fields[0]) {
@@ -195,7 +196,7 @@ class Prover {
     }
   }
 
-  /// False if a solver gave up.
+  /// Improves all fields; returns false if a solver gave up.
   bool improve_all(solver::Method method, solver::Precision precision) {
     const std::unique_ptr<LinearSystem> system =
         solver::make_linear_system(robot_, {.memory_bytes_max = options_.memory_bytes_max,
@@ -232,8 +233,8 @@ class Prover {
     }
   }
 
-  /// Iterative refinement: the residual is that of the certificate's integers, so the digits that
-  /// differences of displacements lose are there.
+  /// Refines iteratively: the residual is that of the certificate's integers, which have the digits
+  /// that differences of displacements lose.
   bool improve(std::size_t field, int pass_max, const Residuals& residuals, LinearSystem& system) {
     double before = std::numeric_limits<double>::infinity();
     for (int pass = 0; pass < pass_max; ++pass) {
@@ -252,7 +253,7 @@ class Prover {
     return true;
   }
 
-  /// In N and N mm.
+  /// The forces of a residual in N and N mm.
   std::vector<Vec> force_of(const Residual& residual) const {
     const double unit = std::ldexp(force_n_, -proof_.certificate.bits);
     std::vector<Vec> force(residual.force.size());
@@ -264,7 +265,7 @@ class Prover {
     return force;
   }
 
-  /// Weak springs in the approximate tangent only; what they add is refined away.
+  /// The weak springs of the approximate tangent; what they add is refined away.
   static constexpr double kUnilateralGamma = 1e-9;
 
   const model::Robot& robot_;
@@ -289,7 +290,7 @@ Proof prove(const model::Robot& robot, const Assessment& assessment, const Proof
 
 namespace {
 
-/// What the range says, by the rule that a ratio within kLoadRatioTie below 1 counts as 1.
+/// The verdict of the range, by the rule that a ratio within kLoadRatioTie below 1 counts as 1.
 verdict::Verdict verdict_of(const certificate::Verification& found) {
   const double limit = 1 - verdict::kLoadRatioTie;
   if (found.ratio_low >= limit) {

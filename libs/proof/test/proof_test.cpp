@@ -28,7 +28,7 @@ model::RobotSpec cantilever(std::int32_t count) {
   return spec;
 }
 
-/// With the strength that makes the load ratio of the cantilever this.
+/// A cantilever with the strength that gives it this load ratio.
 Robot cantilever_at(std::int32_t count, double ratio) {
   model::RobotSpec spec = cantilever(count);
   const double load_n = model::module_weight_n(spec.material) * count * count;
@@ -59,7 +59,7 @@ TEST(Proof, holds_the_closed_form_of_cantilevers) {
   }
 }
 
-/// Without a floor the cell level 0 is like any other.
+/// The cell level 0 is like any other where there is no floor.
 TEST(Proof, knows_no_floor_where_there_is_none) {
   for (const std::int32_t level : {-1, 0, 1}) {
     const Robot robot = Robot::create({.existing = {{0, 0, level}, {1, 0, level}},
@@ -74,7 +74,7 @@ TEST(Proof, knows_no_floor_where_there_is_none) {
   }
 }
 
-/// Nothing is certified of another robot than the one that was asked about.
+/// The proof certifies no other robot than the one that was asked about.
 TEST(Proof, leaves_a_robot_with_released_pairs_undecided) {
   const Robot robot = Robot::create({.existing = {{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}},
                                      .fixed = {{0, 0, 1}},

@@ -41,14 +41,14 @@ bool has_noise(const LinkModel& link) {
          link.corruption > 0;
 }
 
-/// Have modules memory for fronts?
+/// Whether modules have memory for fronts.
 bool lends_fronts(const model::Robot& robot, const SimulationOptions& options) {
   return options.method ? options.method == agent::Method::kFronts
                         : !options.only_one_sweep && needs_environment(robot, options.step_end);
 }
 
-/// Have modules to keep more planned modules than they have room for themselves, those of a step's
-/// end included?
+/// Whether modules must keep more planned modules than they have room for themselves, those of a
+/// step's end included.
 bool plans_many(const model::Robot& robot, const SimulationOptions& options) {
   std::set<base::Cell> cells;
   for (std::size_t i = robot.modules().size() - robot.planned_count(); i < robot.modules().size();
@@ -236,7 +236,7 @@ void Engine::make_fault(const Fault& fault) {
   }
 }
 
-/// To both ends of a link.
+/// Changes both ends of a link.
 void Engine::make_link_fault(const Fault& fault) {
   const std::int32_t other = neighbour(fault.module, fault.face);
   const bool is_silent = fault.kind == Fault::Kind::kCut || fault.kind == Fault::Kind::kMend;
@@ -314,7 +314,7 @@ void Engine::begin_anew(std::int32_t module) {
   start(module);
 }
 
-/// What happens to a module at all its faces is sensed on the other side.
+/// Tells the neighbours at all faces of a module what has happened to it.
 void Engine::tell_neighbours(std::int32_t module, agent::EventKind kind) {
   for (const base::Direction face : base::directions(robot_.lattice())) {
     const std::int32_t other = neighbour(module, face);

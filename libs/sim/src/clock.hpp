@@ -15,7 +15,7 @@ class Clock {
  public:
   Clock() = default;
 
-  /// `rate` in parts of 2^32, at most a tenth of that.
+  /// The clock deviates by `rate` in parts of 2^32, at most a tenth of that.
   Clock(std::uint32_t rate, bool is_slow) : rate_(rate), is_slow_(is_slow) {}
 
   Time local(Time global) const {

@@ -69,9 +69,9 @@ bool Engine::run_for(std::uint64_t event_count) {
   return !is_over_;
 }
 
-/// Nothing is left to do but to watch over verdicts, and there is nothing to be found by that: no
-/// module has died and no link was cut so lately that modules may not know yet. `next`: when the
-/// next event comes.
+/// Whether modules only watch over verdicts, and there is nothing that they could find: no module
+/// has died and no link was cut so lately that modules may not know yet. `next` is the time of the
+/// next event.
 bool Engine::is_at_rest(Time next) const {
   if (work_count_ > 0) {
     return false;
@@ -174,7 +174,7 @@ void Engine::hand_in(std::int32_t module, const agent::Event& event) {
   settle(module);
 }
 
-/// How the module was put on, if that was wrong.
+/// Finds the way in which a module was put on, if that was wrong.
 const Misplaced* Engine::find_misplaced(std::int32_t module) const {
   const auto found = std::ranges::find(options_.misplaced, module, &Misplaced::module);
   return found != options_.misplaced.end() ? &*found : nullptr;
@@ -214,7 +214,7 @@ void Engine::set_wake(Port& port, Time wake_at, bool is_watching) {
   work_count_ += port.has_work() ? 1 : 0;
 }
 
-/// After a step: send, or compute first.
+/// Ends a step of a module: it sends, or computes first.
 void Engine::settle(std::int32_t module) {
   const Time compute_time = options_.link.compute_time;
   if (compute_time == 0) {
@@ -230,7 +230,7 @@ void Engine::settle(std::int32_t module) {
   arm_timer(module);
 }
 
-/// Has the module finished computing? Then it sends, and turns to what has come meanwhile.
+/// Lets a module that has finished computing send, and turn to what has come meanwhile.
 void Engine::ready(std::int32_t module) {
   Port& port = ports_[at(module)];
   if (now_ < port.busy_until) {

@@ -23,7 +23,7 @@ class Engine {
  public:
   Engine(const model::Robot& robot, SimulationOptions options);
 
-  /// False: it is over.
+  /// Hands about `event_count` events to modules; returns false if the simulation is over.
   bool run_for(std::uint64_t event_count);
 
   void happen(const Fault& fault);
@@ -47,7 +47,7 @@ class Engine {
     kAnnounce,  ///< item: index in the options.
   };
 
-  /// What the queue carries. Packed into 64 bits: item, module, face, kind.
+  /// An item of the queue, packed into 64 bits: item, module, face, kind.
   struct Happening {
     Kind kind{};
     base::Direction face{};
@@ -148,8 +148,8 @@ class Engine {
   agent::Actions actions_{};
   Time now_ = 0;
   std::uint64_t packet_count_ = 0;
-  /// What is to be done besides watching: events in the queue that are no timers, modules that want
-  /// to wake.
+  /// The amount of work to be done besides watching: events in the queue that are no timers, and
+  /// modules that want to wake.
   std::size_t work_count_ = 0;
   Time break_at_ = agent::kNever;  ///< Of the last thing that nobody was told of.
   bool is_booted_ = false;

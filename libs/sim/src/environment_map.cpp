@@ -35,7 +35,7 @@ double find_mass_unit(const model::Robot& robot) {
   return is_counted ? static_cast<double>(divisor) * kMassDigitKg : 0;
 }
 
-/// Do all facets lie in one level plane, and can they lift, under weight alone, straight down?
+/// Whether all facets lie in one level plane and can lift, under weight alone, straight down.
 bool is_on_level_floor(const model::Robot& robot) {
   const auto& [x, y, z] = robot.gravity();
   if (x != 0 || y != 0 || z >= 0 || robot.has_payloads() || !robot.carried().empty()) {
@@ -54,7 +54,7 @@ double dot(const std::array<double, 3>& a, const std::array<double, 3>& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// In the frame of a plane: force, then torque.
+/// Turns a load, force then torque, into the frame of a plane.
 base::Vec6<double> in_plane(const SupportPlane& plane, const base::Vec6<double>& load) {
   base::Vec6<double> local{};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -64,13 +64,13 @@ base::Vec6<double> in_plane(const SupportPlane& plane, const base::Vec6<double>&
   return local;
 }
 
-/// What a load at a height above the plane, in mm, does to it about the foot of the node: moments
-/// that forces along x' and y' would have to be shifted by.
+/// The moments of a load at a height above the plane, in mm, about the foot of the node: forces
+/// along x' and y' would have to be shifted by them.
 std::array<double, 2> moments_about_foot(const base::Vec6<double>& local, double height_mm) {
   return {height_mm * local[0] + local[4], height_mm * local[1] - local[3]};
 }
 
-/// So small that sums fit, of forces as masses do and of moments in 31 bits, and no smaller.
+/// The smallest unit with which sums fit: of forces as of masses, and of moments in 31 bits.
 double unit_of_loads(const model::Robot& robot, const SupportPlane& plane) {
   const base::NodePlaces node_mm(robot.lattice(), robot.material().pitch_mm);
   const double part_mm = robot.material().pitch_mm / agent::kPlaneParts;
@@ -187,7 +187,8 @@ void EnvironmentMap::describe(const void* map, const base::Cell& cell, agent::Su
   self.describe(base::at(module), node);
 }
 
-/// Of a module that the robot does not have nothing is known: its load already decides nothing.
+/// The law of a connection. A module that the robot does not have gets a default law: its load,
+/// which is not a number, already prevents a decision.
 const model::ConnectorLaw& EnvironmentMap::law(const void* map, const base::Cell& cell,
                                                base::Direction direction, const base::Cell& other) {
   static const model::ConnectorLaw kUnknown;

@@ -29,11 +29,11 @@ struct SupportPlane {
 
 std::optional<SupportPlane> find_support_plane(const model::Robot& robot);
 
-/// The same plane before a step and behind it.
+/// Returns the robot's support plane if the robot after a step, which may be null, has the same.
 std::optional<SupportPlane> find_support_plane(const model::Robot& robot,
                                                const model::Robot* step_end);
 
-/// What agents are told of the world where a robot is more than cubes on a floor under their weight
+/// Tells agents of the world where a robot is more than cubes on a floor under their weight
 /// (agent/surroundings.hpp): of every cell with a module, existing or planned, its load, its mass
 /// and its facets.
 class EnvironmentMap {
@@ -47,7 +47,7 @@ class EnvironmentMap {
 
   const agent::Environment& environment() const { return environment_; }
 
-  /// Of the robot as a step leaves it; outlives this one.
+  /// Sets the environment of the robot as a step leaves it, which must outlive this one.
   void set_connected(const agent::Environment* connected) { environment_.connected = connected; }
 
  private:
@@ -77,20 +77,21 @@ struct RatioBounds {
 
 RatioBounds ratio_bounds(const model::Robot& robot);
 
-/// The same of a robot before a step and behind it.
+/// Returns the larger bounds of a robot and of the robot after a step, which may be null.
 RatioBounds ratio_bounds(const model::Robot& robot, const model::Robot* step_end);
 
 /// All facets lie in one level plane and can lift, only weight acts, straight down, and masses are
 /// whole numbers of one unit: so the simplified check is exact.
 bool stands_level(const model::Robot& robot);
 
-/// A robot of equal cubes on a floor that weighs down, which agents know without a map.
+/// Whether agents need a map of the robot: they know equal cubes on a floor under their weight
+/// without.
 bool needs_environment(const model::Robot& robot);
 
-/// The same of a robot or of what a step makes of it, if that is known.
+/// Whether agents need a map of the robot, or of the robot after a step, which may be null.
 bool needs_environment(const model::Robot& robot, const model::Robot* step_end);
 
-/// What of a robot its modules' program does not know, if anything.
+/// Says what of a robot its modules' program does not know, if anything.
 std::optional<std::string> find_unknown_to_modules(const model::Robot& robot);
 
 /// The width of a facet on the ground as a fraction of the pitch.
@@ -99,7 +100,7 @@ struct FootParts {
   std::int32_t denominator = 1;
 };
 
-/// With a numerator from 1 and a denominator up to `part_max`.
+/// Returns the fraction, with a numerator from 1 and a denominator up to `part_max`, for a robot.
 FootParts foot_parts(const model::Robot& robot, std::int32_t part_max);
 
 /// The memory that modules are lent (agent::LentMemory), for fronts, for stages of a step, for
@@ -117,7 +118,7 @@ class LentStore {
 
   LentStore(const model::Robot& robot, std::size_t module_count, Needs needs);
 
-  /// Null where a module needs none.
+  /// The memory that a module is lent; null where modules need none.
   const agent::LentMemory* memory_of(std::size_t module) const {
     return memory_.empty() ? nullptr : &memory_[module];
   }

@@ -6,7 +6,8 @@
 #include "engine.hpp"
 #include "holdfast/base/check.hpp"
 
-/// Packets: from the agent that has one to the line, and from the line to the agent at its end.
+/// Carries packets: from the agent that has one to the line, and from the line to the agent at its
+/// end.
 namespace holdfast::sim {
 
 /// Offers every free line to the agent that wants it.
@@ -35,7 +36,7 @@ void Engine::offer_line(std::int32_t module, int face) {
   }
 }
 
-/// False: there was nothing to send after all.
+/// Sends a packet; returns false if there was nothing to send after all.
 bool Engine::send_one(std::int32_t module, int face) {
   step_event_ = event_of(agent::EventKind::kLineFree, static_cast<base::Direction>(face));
   step(module);

@@ -109,10 +109,11 @@ Time line_time(const LinkModel& model, int packet_bytes) {
   return model.packet_time + (bits * model.ticks_per_second + model.bit_rate - 1) / model.bit_rate;
 }
 
-/// From the moment a packet is handed to its line, in the worst case: the packet and its delays;
-/// the other side's computing; acknowledge_after; a packet that the acknowledgement has to wait
-/// for, the acknowledgement and its delays; computing again. Computing waits for one event of every
-/// face and a timer. Clocks may run fast by the drift.
+/// Makes a module wait long enough before it sends a packet again. The longest wait, from the
+/// moment a packet is handed to its line, is the packet and its delays; the other side's computing;
+/// acknowledge_after; a packet for which the acknowledgement has to wait, the acknowledgement and
+/// its delays; computing again. Computing waits for one event of every face and a timer. Clocks may
+/// run fast by the drift.
 agent::LinkTiming link_timing(const LinkModel& model, int face_count) {
   const Time events_ahead = static_cast<Time>(face_count) + 1;
   const Time line = line_time(model, model.packet_bytes);

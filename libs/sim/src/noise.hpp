@@ -8,13 +8,13 @@
 #include "holdfast/base/rng.hpp"
 #include "holdfast/sim/link_model.hpp"
 
-/// What happens to packets on the way, drawn from the sender's own generator.
+/// Draws what happens to packets on the way from the sender's own generator.
 namespace holdfast::sim {
 
 /// An event of some probability, decided in integers: the same on every platform.
 class Chance {
  public:
-  /// `probability` in [0, 1].
+  /// The event has this probability, in [0, 1].
   explicit Chance(double probability)
       : threshold_(static_cast<std::uint64_t>(probability * kScale)) {}
 
@@ -43,10 +43,10 @@ class Noise {
 
   bool is_corrupted(base::Rng& rng) const { return corruption_.happens(rng); }
 
-  /// 0 to the model's jitter.
+  /// A random time from 0 to the model's jitter.
   Time jitter(base::Rng& rng) const { return jitter_ == 0 ? 0 : rng.below(jitter_ + 1); }
 
-  /// 1 to the model's reordering delay.
+  /// A random time from 1 to the model's reordering delay.
   Time delay(base::Rng& rng) const { return 1 + rng.below(reordering_delay_); }
 
  private:

@@ -4,7 +4,7 @@
 
 #include "engine.hpp"
 
-/// What a simulation has come to.
+/// Makes the result of a simulation.
 namespace holdfast::sim {
 
 bool is_same(const agent::Answer& a, const agent::Answer& b) {

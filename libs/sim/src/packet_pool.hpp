@@ -18,7 +18,7 @@ struct PacketTag {
 
 class PacketPool {
  public:
-  /// No packet is larger than `packet_bytes`.
+  /// The packets have at most `packet_bytes` bytes.
   explicit PacketPool(int packet_bytes)
       : slot_bytes_((sizeof(PacketTag) + static_cast<std::size_t>(packet_bytes) + 15) / 16 * 16) {}
 

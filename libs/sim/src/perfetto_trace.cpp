@@ -15,7 +15,7 @@ namespace holdfast::sim {
 /// The format is that of Chrome's trace viewer: complete slices "X", arrows from "s" to "f",
 /// instants "i", names "M". Slices are written when they end, so that none is ever left open.
 struct PerfettoTrace::Writer {
-  /// What a module is doing.
+  /// The state of a module's thread in the trace.
   struct Thread {
     agent::Phase phase = agent::Phase::kDiscovery;
     Time since = 0;
@@ -31,7 +31,7 @@ struct PerfettoTrace::Writer {
   bool is_closed = false;
   std::string line = {};
 
-  /// Room for one more event? Names do not count.
+  /// Whether there is room for one more event; names do not count.
   bool takes_event() {
     if (is_closed || event_count >= options.event_count_max) {
       is_truncated = true;

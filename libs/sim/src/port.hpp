@@ -12,7 +12,7 @@
 #include "holdfast/sim/recorder.hpp"
 #include "holdfast/sim/wake_timer.hpp"
 
-/// What the simulation keeps for each module beside its agent.
+/// Stores what the simulation keeps for each module beside its agent.
 namespace holdfast::sim {
 
 /// The lines at six faces.
@@ -59,7 +59,7 @@ struct Port {
 
   bool takes_part() const { return is_attached && !is_silenced; }
 
-  /// Has the agent something to do when it wakes but watching?
+  /// Whether the agent has something to do when it wakes but watching.
   bool has_work() const { return timer.wake_at != agent::kNever && !is_watching; }
 };
 

@@ -22,7 +22,7 @@ std::optional<std::string> find_module_fault(const char* what, std::int32_t modu
   return fmt::format("{} is {}, allowed are existing modules: 0 to {}", what, module, count - 1);
 }
 
-/// Has some support a coefficient of friction?
+/// Whether some support has a coefficient of friction.
 bool has_friction(const model::Robot& robot) {
   return std::ranges::any_of(
       robot.facets(), [](const model::Facet& facet) { return facet.touch.friction.has_value(); });
@@ -57,7 +57,7 @@ std::uint8_t wire_number(const base::Lattice& lattice) {
                                          : agent::wire::kHexagonalPrismLattice;
 }
 
-/// Is every face of the lattice named once?
+/// Finds a fault unless every face of the lattice is named once.
 std::optional<std::string> find_faces_fault(const model::Robot& robot, const Misplaced& misplaced) {
   std::uint32_t seen = 0;
   const auto count = static_cast<std::size_t>(robot.lattice().direction_count);
@@ -71,7 +71,8 @@ std::optional<std::string> find_faces_fault(const model::Robot& robot, const Mis
                      misplaced.module, count);
 }
 
-/// What is in a cell where the robot has no module is known of a floor only.
+/// Finds a fault in an announcement: what is in a cell where the robot has no module is known only
+/// of a floor.
 std::optional<std::string> find_place_fault(const model::Robot& robot,
                                             const Announcement& announcement) {
   const auto is_there = [&](const model::Module& module) {

@@ -88,8 +88,9 @@ TEST(Fault, of_a_module_put_on_leads_to_the_verdict_with_it) {
   }
 }
 
-/// It closes a ring, so two neighbours welcome it; what one of them says of plans and of how it
-/// moves may be sent again and come when it has had its place below the other for long.
+/// The new module closes a ring, so two neighbours welcome it; what one of them says of plans and
+/// of how it moves may be sent again, and arrive when the module has long had its place below the
+/// other.
 TEST(Fault, of_a_module_put_on_between_two_is_survived_by_lossy_links) {
   for (const std::vector<base::Cell>& planned :
        {std::vector<base::Cell>{}, {{2, 0, 0}, {2, 0, 1}}}) {
@@ -128,7 +129,8 @@ TEST(Fault, list_may_take_a_module_off_and_put_it_on_again) {
   }
 }
 
-/// Nobody is told, and long after the link is lost only its two ends can notice that it carries.
+/// The modules are not told, and long after the link is lost only its two ends can notice that it
+/// carries.
 TEST(Fault, of_a_link_ends_when_it_carries_again) {
   model::RobotSpec spec = cube(2);
   spec.existing.push_back({2, 0, 1});
@@ -165,7 +167,7 @@ TEST(Fault, of_a_connection_opened_and_closed_again_leads_to_both_verdicts) {
   }
 }
 
-/// As after a power failure: its neighbours are there all the time, and have not noticed.
+/// A module starts again as after a power failure: its neighbours stay, and have not noticed.
 TEST(Fault, of_a_module_that_starts_again_leads_to_the_verdict_with_it) {
   const model::Robot robot = make_robot(cube(2));
   for (const agent::Method method : {agent::Method::kElimination, agent::Method::kFronts}) {

@@ -102,8 +102,8 @@ TEST(Simulation, knows_no_floor_where_there_is_none) {
   }
 }
 
-/// It has no load ratio, by which what its facets bear would be good or not. It is pulled off one
-/// wall and along the other.
+/// The module has no load ratio that could make what its facets carry matter or not. It is pulled
+/// off one wall and along the other.
 TEST(Simulation, waits_for_the_facets_of_a_single_module) {
   const model::Robot robot =
       make_robot({.existing = {{0, 0, 0}},

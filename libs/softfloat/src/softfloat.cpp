@@ -12,7 +12,7 @@ constexpr Double kHidden = Double{1} << kDigits;
 constexpr Double kInfinity = Double{kExponentMax} << kDigits;
 constexpr Double kQuietNan = Double{0xfff} << (kDigits - 1);
 
-/// Three digits behind the last one: guard, round, and whether anything follows.
+/// The number of digits behind the last one: guard, round, and whether anything follows.
 constexpr unsigned kGuard = 3;
 
 int exponent_of(Double a) { return static_cast<int>(a >> kDigits) & kExponentMax; }
@@ -27,7 +27,7 @@ int leading_zeros(std::uint64_t a) {
   return high(a) != 0 ? __builtin_clz(high(a)) : 32 + __builtin_clz(low(a));
 }
 
-/// a / 2^shift; what falls out leaves its trace in the last digit.
+/// Computes a / 2^shift; the last digit keeps a trace of what falls out.
 std::uint64_t shifted_down(std::uint64_t a, int shift) {
   if (shift == 0) {
     return a;
@@ -84,7 +84,7 @@ Double rounded(Double sign, int exponent, std::uint64_t digits) {
   return sign | (whole >= kInfinity ? kInfinity : whole);
 }
 
-/// 32 x 32 to 64 digits from four products of 16 x 16.
+/// Multiplies 32 x 32 digits to 64 by four products of 16 x 16.
 [[gnu::always_inline]] inline std::uint64_t product(std::uint32_t a, std::uint32_t b) {
   const std::uint32_t a0 = a & 0xffffU;
   const std::uint32_t a1 = a >> 16U;
@@ -106,7 +106,7 @@ Double packed(Double sign, int exponent, std::uint64_t digits) {
   return sign | ((static_cast<Double>(exponent - 1) << kDigits) + digits);
 }
 
-/// |a| >= |b|: whatever is not two usual numbers.
+/// Adds two numbers, |a| >= |b|, that are not both usual.
 Double add_any(Double a, Double b) {
   if ((b & ~kSign) == 0 && (a & ~kSign) != 0 && a << 1U < kInfinity << 1U) {
     return a;
@@ -192,10 +192,10 @@ Double add(Double a, Double b) {
 
 namespace {
 
-/// Neither zero nor subnormal, infinite or a NaN.
+/// Whether a number is neither zero nor subnormal, infinite or a NaN.
 bool is_usual(Double a) { return ((high(a) + 0x100000U) & 0x7fe00000U) != 0; }
 
-/// From digits with the hidden one.
+/// Multiplies the digits of two numbers, the hidden one included.
 [[gnu::noinline]] Double multiply_digits(std::uint64_t x, std::uint64_t y, int exponent,
                                          Double sign) {
   // 106 digits; the lower 32 only matter as a trace.
@@ -215,7 +215,7 @@ bool is_usual(Double a) { return ((high(a) + 0x100000U) & 0x7fe00000U) != 0; }
   return is_normal ? packed(sign, exponent, digits) : rounded(sign, exponent, digits);
 }
 
-/// Whatever is not two usual numbers.
+/// Multiplies two numbers that are not both usual.
 [[gnu::noinline]] Double multiply_any(Double a, Double b) {
   const Double sign = (a ^ b) & kSign;
   a &= ~kSign;

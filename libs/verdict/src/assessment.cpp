@@ -20,36 +20,39 @@ using mechanics::ContactLaw;
 using solver::Equilibrium;
 using solver::Outcome;
 
-/// Weak springs beside the unilateral contact of a stable robot: they change no load ratio by more
-/// than about 1e-8, and keep the matrix regular on the way to the answer.
+/// The weak springs beside the unilateral contact of a stable robot: they change no load ratio by
+/// more than about 1e-8, and keep the matrix regular until the answer is found.
 constexpr double kStableGammas[] = {1e-9};
 
-/// Multigrid tries only this one: weaker springs escape its single precision, below its own error.
+/// The only weak springs that multigrid tries: weaker ones are lost in its single precision, below
+/// its own error.
 constexpr double kStableGammasMultigrid[] = {1e-6};
 
-/// A toppling robot hangs on its weak springs, and bends elastically while it does: if they are
+/// The weak springs of a toppling robot, which bends elastically while they hold it. If they are
 /// stiff, three corners may still touch and look like a hold. The weaker they are, the more the
-/// tilt outweighs the bending; the second value serves one robot in ten thousand. Much weaker ones
-/// drown the contact states in rounding.
+/// tilt outweighs the bending; the second value serves one robot in ten thousand. Much weaker
+/// springs lose the contact states in rounding.
 constexpr double kTopplingGammas[] = {1e-6, 1e-7};
 
-/// From here on a robot that topples is told from the rigid body alone, which is certain: its
-/// equilibrium is that of the weak springs it would hang on, a large and almost singular problem.
+/// A toppling robot of more modules is recognised by the rigid body alone, which is certain: its
+/// equilibrium is that of the weak springs that would hold it, a large and almost singular problem.
 constexpr std::size_t kTopplingCountMax = 1000;
 
-/// A verdict that hangs on multigrid's error is sought once more with so much less of it.
+/// The factor of the tolerance with which a verdict that depends on multigrid's error is sought
+/// again.
 constexpr double kFinerTolerance = 1e-6;
 
-/// Then the direct solver is asked first where no more blocks than this fill in per module: a solid
-/// cube of 17, 4,913 modules, has 60.
+/// The direct solver comes first when a verdict is sought again if no more blocks than this fill in
+/// per module: a solid cube of 17, 4,913 modules, has 60.
 constexpr std::size_t kPreciseFillMax = 100;
 
-/// From here on it is asked last, after multigrid with some more digits and with many: of a tower
-/// of 3 x 3 x 20,000 that takes a sixth of the time and a tenth of the memory.
+/// The direct solver comes last for robots of more modules, after multigrid with some more digits
+/// and with many: a tower of 3 x 3 x 20,000 then takes a sixth of the time and a tenth of the
+/// memory.
 constexpr std::size_t kPreciseCountMax = 2'000;
 constexpr double kFineTolerance = 1e-4;
 
-/// What the rigid body says, Sec. III-B.
+/// The part of the assessment that the rigid body decides, Sec. III-B.
 Assessment look_at_rigid_body(const Situation& here, bool has_figures) {
   Assessment assessment;
   assessment.stability_rule = here.rule;
@@ -157,7 +160,7 @@ void solve(const Situation& here, const solver::EquilibriumOptions& options,
   }
 }
 
-/// Connections, verdict and reasons, once there are an equilibrium and its loads.
+/// Finds connections, verdict and reasons, once there are an equilibrium and its loads.
 void conclude(const Situation& here, int thread_count, Assessment& assessment) {
   if (assessment.equilibrium.outcome == Outcome::kSettled) {
     assess_connections(here.robot, thread_count, assessment);
@@ -190,8 +193,9 @@ bool is_near_limit(const Assessment& assessment) {
            !do_agree(*assessment.several, breaks(assessment.load_ratio_range.low))));
 }
 
-/// Where the verdict hangs on the error: the direct solver with all digits, or where that does not
-/// fit multigrid with more of them; of large robots the other way round.
+/// The options for seeking a verdict again that depends on the error: the direct solver with all
+/// digits, or where that does not fit multigrid with more of them; for large robots the other way
+/// round.
 std::vector<solver::EquilibriumOptions> finer_options(const Situation& here,
                                                       const solver::EquilibriumOptions& options) {
   std::vector<solver::EquilibriumOptions> list;

@@ -20,21 +20,22 @@ namespace {
 using mechanics::ContactLaw;
 using solver::Equilibrium;
 
-/// What weak springs that are not taken back from the unilateral contact of a stable robot may
-/// move, in the same terms: so many times their share of the contact's stiffness, besides what
-/// their energy may do. In a robot of 4,327 modules with long thin limbs springs of 1e-9 moved the
-/// largest load ratio by 1.4e-4, and of 1e-6 by 4 %, so this alone is no bound.
+/// The factor for weak springs that are not taken back from the unilateral contact of a stable
+/// robot: they may move load ratios by so many times their share of the contact's stiffness,
+/// besides what their energy may do. In a robot of 4,327 modules with long thin limbs springs of
+/// 1e-9 moved the largest load ratio by 1.4e-4, and of 1e-6 by 4 %, so this alone is no bound.
 constexpr double kWeakSprings = 1e3;
 
-/// What multigrid may be off by, as it promises (docs/solver.md).
+/// The error of multigrid, as it promises (docs/solver.md).
 constexpr double kMultigridError = 1e-4;
 
-/// Unlike with std::max, a NaN on either side wins: what is not known must not hide.
+/// The larger number; unlike with std::max, a NaN on either side wins, so that nothing unknown is
+/// hidden.
 double max_or_nan(double a, double b) { return std::isnan(a) || a > b ? a : b; }
 
 bool is_nan(const LoadRange& range) { return std::isnan(range.low) || std::isnan(range.high); }
 
-/// What some connections say together.
+/// The sums of what some connections say.
 struct Loads {
   LoadRange range = {.low = -std::numeric_limits<double>::infinity(),
                      .high = -std::numeric_limits<double>::infinity()};
@@ -75,8 +76,8 @@ bool is_alternative_spent(const Equilibrium& equilibrium) {
          equilibrium.open_but_held_count == 0;
 }
 
-/// What all connections say together, and which break; the results of each as well, if the second
-/// answer is to stay. If that has gone before, nothing is known of how the two differ.
+/// Adds up what all connections say, and which break; keeps the results of each as well, if the
+/// second answer is to stay. If that has gone before, nothing is known of how the two differ.
 Loads add_up(const model::Robot& robot, host::Team& team, Assessment& assessment) {
   const ConnectionLaws laws(robot);
   const auto connections = robot.connections();
@@ -141,7 +142,7 @@ void add_results(const model::Robot& robot, host::Team& team, Assessment& assess
   });
 }
 
-/// What one rank's connections say, for all others.
+/// The loads of one rank's connections, for all others.
 struct RankLoads {
   Loads loads;
   std::array<base::Cell, 2> worst_ends = {};
@@ -169,22 +170,22 @@ WholeLoads add_ranks(const model::Robot& robot, std::size_t broken_count, Loads&
   return whole;
 }
 
-/// Two answers of multigrid differ by less than the error of the better one, once in a while, and
-/// the error's energy is estimated too low. So of any connection the margin takes the largest
-/// difference so many times, or what the energy so many times could do to a load ratio, whichever
-/// is less; and never less than what is promised (docs/solver.md).
+/// The factor of multigrid's margin. Two answers of multigrid differ now and then by less than the
+/// error of the better one, and the error's energy is estimated too low. A connection's margin is
+/// therefore the largest difference times this factor, or what this factor times the energy could
+/// do to a load ratio, whichever is less; and never less than what is promised (docs/solver.md).
 constexpr double kMultigridFactor = 10;
 
-/// Where a verdict that hung on the error is sought with more digits, rounding may leave fewer than
-/// the two answers have in common: in a tower of 111,111 levels they differed by a thirtieth of the
-/// error.
+/// The additional factor for a verdict that depends on the error and is sought with more digits.
+/// Rounding may leave fewer digits than the two answers have in common: in a tower of 111,111
+/// levels they differed by a thirtieth of the error.
 constexpr double kFinerFactor = 10;
 
 /// Refinements in double that find nothing but rounding differ by less than their error now and
 /// then.
 constexpr double kDirectFactor = 10;
 
-/// How much stiffer a beam is one way than another, all told as forces by millimetres at its ends.
+/// The ratio of a beam's largest stiffness to its least, all as forces by millimetres at its ends.
 double stiffness_spread(const model::Robot& robot) {
   const mechanics::BeamSection<double> section = model::beam_section(robot.material());
   const auto k = mechanics::beam_stiffness(section);
@@ -194,7 +195,7 @@ double stiffness_spread(const model::Robot& robot) {
   return most / least;
 }
 
-/// How far the largest load ratio may be from the truth.
+/// The distance by which the largest load ratio may be off.
 double error_margin(const model::Robot& robot, const solver::EquilibriumOptions& options,
                     const Equilibrium& equilibrium, const Loads& loads) {
   const double scale = std::max(1.0, loads.ratio_max);
@@ -214,7 +215,7 @@ double error_margin(const model::Robot& robot, const solver::EquilibriumOptions&
   return margin + kDirectFactor * loads.change;
 }
 
-/// What lies between the largest load ratios of two answers.
+/// The range between the largest load ratios of two answers.
 LoadRange between_answers(const Loads& loads) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   return is_nan(loads.range) ? LoadRange{.low = kNan, .high = kNan}
@@ -222,13 +223,12 @@ LoadRange between_answers(const Loads& loads) {
                                          .high = std::max(loads.ratio_max, loads.other_max)};
 }
 
-/// From so many on memory that the solver has left goes back before results, which come in one
-/// piece that is larger than any hole, take theirs: a ball of 990,000 modules takes 380 MB instead
-/// of 500.
+/// Robots of so many modules free the solver's memory before their results, one block that fits
+/// into no hole, are allocated: a ball of 990,000 modules takes 380 MB instead of 500.
 constexpr std::size_t kManyModules = 200'000;
 
-/// Nothing is said of a load below its own uncertainty: then it may as well be compression. Between
-/// the answers of ambiguous feet, which lie far apart, each is as good as the other.
+/// Whether a load counts as tension. A load below its own uncertainty may as well be compression;
+/// between the answers of ambiguous feet, which lie far apart, each is as good as the other.
 bool is_pulled_apart(double ratio_max, const Assessment& assessment) {
   const LoadRange& range = assessment.load_ratio_range;
   const bool is_known = breaks(ratio_max) || assessment.equilibrium.open_but_held_count > 0 ||
@@ -236,7 +236,7 @@ bool is_pulled_apart(double ratio_max, const Assessment& assessment) {
   return ratio_max >= kLoadRatioTie && is_known;
 }
 
-/// Of all ranks' gaps.
+/// The gap that is widest for its limit, and the count of all ranks' gaps.
 OpenGaps widest_of_all(host::Ranks& ranks, const OpenGaps& mine) {
   OpenGaps widest = mine;
   widest.count = 0;
@@ -311,7 +311,7 @@ LoadRange assess_loads(const Situation& here, const solver::EquilibriumOptions& 
   return between_answers(loads);
 }
 
-/// Sec. III-D for every connection.
+/// Finds the load ratio of every connection (Sec. III-D).
 void assess_connections(const model::Robot& robot, int thread_count, Assessment& assessment) {
   if (assessment.connections.empty() && !robot.connections().empty()) {
     if (robot.modules().size() >= kManyModules) {

@@ -6,20 +6,21 @@
 
 #include "situation.hpp"
 
-/// What an equilibrium says of the connections (Sec. III-D).
+/// Assesses the connections in an equilibrium (Sec. III-D).
 namespace holdfast::verdict {
 
-/// What load ratios may be off by rounding alone, as a share of the largest or of 1.
+/// The error of load ratios by rounding alone, as a share of the largest or of 1.
 inline constexpr double kRounding = 1e-12;
 
-/// What multigrid's load ratios may be off by, as a share of the largest or of 1: what it promises
-/// at this tolerance, or what very soft beams take of it.
+/// The error of multigrid's load ratios, as a share of the largest or of 1: what it promises at
+/// this tolerance, or what very soft beams take of it.
 double multigrid_error(const model::Robot& robot, const solver::EquilibriumOptions& options);
 
-/// What weak springs beside the unilateral contact may have done to load ratios, the largest of
-/// which, or 1, is `scale`, where the solver could not take them back, besides what the second
-/// answer shows: a share of the contact's stiffness. Where that answer is for ambiguous feet, or
-/// what they do is not known, what the energy between the solutions with and without could do.
+/// The error that weak springs beside the unilateral contact may have made in load ratios, besides
+/// what the second answer shows, where the solver could not take them back: a share of the
+/// contact's stiffness. Where that answer is for ambiguous feet, or its error is not known, the
+/// error that the energy between the solutions with and without could make. `scale` is the largest
+/// load ratio, or 1.
 double weak_spring_error(const model::Robot& robot, const solver::Equilibrium& equilibrium,
                          double scale);
 
@@ -30,8 +31,8 @@ double weak_spring_error(const model::Robot& robot, const solver::Equilibrium& e
 LoadRange assess_loads(const Situation& here, const solver::EquilibriumOptions& options,
                        Assessment& assessment);
 
-/// After assess_loads(): fills in every connection's result, unless they are there, and sorts those
-/// that break.
+/// Fills in the results of all connections, unless they are there, and sorts those that break; to
+/// be called after assess_loads().
 void assess_connections(const model::Robot& robot, int thread_count, Assessment& assessment);
 
 /// The gaps that are too wide; none if no connection has a limit, or none is exceeded.

@@ -23,7 +23,7 @@ Reason toppling_reason(const RigidBody& body) {
   return {.code = ReasonCode::kTopples, .numbers = {a.x, a.y, b.x, b.y, -*body.margin_mm}};
 }
 
-/// Why the loads of a stable robot do not say whether anything breaks; none if they do.
+/// Says why the loads of a stable robot do not decide whether anything breaks; none if they do.
 std::optional<Reason> find_doubt(const Situation& here, const Assessment& assessment) {
   const Equilibrium& equilibrium = assessment.equilibrium;
   const LoadRange& range = assessment.load_ratio_range;
@@ -62,7 +62,7 @@ std::vector<base::Cell> worst_cells(const Assessment& assessment) {
   return {assessment.whole->worst.begin(), assessment.whole->worst.end()};
 }
 
-/// Why a robot is safe in which nothing breaks.
+/// Says why a robot is safe in which nothing breaks.
 Reason holding_reason(const Assessment& assessment) {
   if (connection_count(assessment) == 0) {
     return {.code = ReasonCode::kSingleModule};
@@ -96,8 +96,9 @@ std::vector<base::Cell> slip_cells(const model::Robot& robot, const Slip& slip) 
   return {host::gather(robot.ranks(), std::span<const base::Cell>(&mine, 1))[base::at(slip.rank)]};
 }
 
-/// Why a robot that the rigid body holds may not stay by the model; none if it does. With supports
-/// anywhere neither of both answers is enough to be safe. Without equilibrium the model has none.
+/// Says why a robot that the rigid body holds may not stay by the model; none if it does. With
+/// supports anywhere neither of both answers is enough to be safe. Without equilibrium the model
+/// has none.
 std::optional<Reason> find_fall(const Situation& here, const Assessment& assessment) {
   const ModelStability& model = assessment.model;
   auto slip = assessment.equilibrium.outcome == Outcome::kSettled
@@ -117,7 +118,7 @@ std::optional<Reason> find_fall(const Situation& here, const Assessment& assessm
   return fall;
 }
 
-/// Why a robot that the rigid body does not hold is not known to stay.
+/// Says why a robot that the rigid body does not hold is not known to stay.
 Reason falling_reason(const Assessment& assessment) {
   using limit::RigidAnswer;
   const limit::RigidStability& rigid = assessment.rigid;
@@ -160,7 +161,7 @@ void add_contact_remarks(Assessment& assessment) {
   }
 }
 
-/// What is no reason for the verdict, but belongs to its loads.
+/// Adds remarks that are no reason for the verdict, but belong to its loads.
 void add_load_remarks(const Situation& here, Assessment& assessment) {
   if (const auto& gaps = assessment.gaps) {
     Reason reason = {.code = ReasonCode::kGapsOpen,
@@ -190,7 +191,7 @@ struct Decision {
   Reason reason;
 };
 
-/// What docs/theory.md defines as the verdict: the first that holds.
+/// Finds the verdict as docs/theory.md defines it: the first that holds.
 Decision decision_on(const Situation& here, const Assessment& assessment) {
   if (!assessment.is_stable) {
     const bool is_known = assessment.rigid.answer != limit::RigidAnswer::kUndecided;

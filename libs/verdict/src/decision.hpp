@@ -6,7 +6,7 @@
 
 namespace holdfast::verdict {
 
-/// Verdict and reasons, from an assessment that has all else.
+/// Finds verdict and reasons from an assessment that has all else.
 void decide(const Situation& here, Assessment& assessment);
 
 }  // namespace holdfast::verdict

@@ -48,7 +48,7 @@ class Number {
     }
   }
 
-  /// -1, 0 or 1.
+  /// Compares two numbers; returns -1, 0 or 1.
   int compare(const Number& other) const {
     for (std::size_t i = words_.size(); i-- > 0;) {
       if (words_[i] != other.words_[i]) {
@@ -75,7 +75,7 @@ class Number {
 
 constexpr int kDigits = 53;
 
-/// value = digits * 2^exponent.
+/// Splits a value into digits * 2^exponent.
 std::uint64_t digits_of(double value, int& exponent) {
   const double mantissa = std::frexp(value, &exponent);
   exponent -= kDigits;

@@ -9,7 +9,7 @@ namespace holdfast::verdict {
 
 __extension__ using Wide = __int128;
 
-/// pitches * P + facets * F, of the half pitch P and the half facet F.
+/// A length pitches * P + facets * F, where P is half the pitch and F half the facet's width.
 struct Length {
   std::int64_t pitches = 0;
   std::int64_t facets = 0;
@@ -23,7 +23,7 @@ struct Length {
   }
 };
 
-/// square * P^2 + mixed * P F + facets * F^2. Coefficients below 2^100.
+/// An area square * P^2 + mixed * P F + facets * F^2, with coefficients below 2^100.
 struct Area {
   Wide square = 0;
   Wide mixed = 0;
@@ -40,17 +40,18 @@ constexpr Area operator*(const Length& a, const Length& b) {
           static_cast<Wide>(a.facets) * b.facets};
 }
 
-/// Pitch and facet as they are given, two positive doubles whose quotient is 2^-90 to 2^90.
+/// The pitch and the facet's width as they are given, two positive doubles whose quotient is 2^-90
+/// to 2^90.
 class Measure {
  public:
   Measure(double pitch, double facet);
 
-  /// -1, 0 or 1, without any rounding: by doubles where their error bound decides, else by whole
-  /// numbers of 512 bits.
+  /// The sign, -1, 0 or 1, without any rounding: by doubles where their error bound decides, else
+  /// by whole numbers of 512 bits.
   int sign(const Area& area) const;
   int sign(const Length& length) const;
 
-  /// In units of P, or of P^2, rounded; zero and sign are exact.
+  /// The value of an area in P^2, of a length in P, rounded; zero and sign are exact.
   double value(const Area& area) const;
   double value(const Length& length) const;
 

@@ -17,8 +17,8 @@
 namespace holdfast::verdict {
 namespace {
 
-/// In half pitches and half facets. Scaled by the number of modules where the centre of mass takes
-/// part: coordinates reach 2^21 times 2^25 modules, products 2^70.
+/// A point in half pitches and half facets. All are scaled by the number of modules where the
+/// centre of mass takes part: coordinates reach 2^21 times 2^25 modules, products 2^70.
 struct Point {
   Length x;
   Length y;
@@ -30,8 +30,9 @@ Area turn(const Point& a, const Point& b, const Point& c, std::int64_t count = 1
   return (b.x - a.x) * (c.y - count * a.y) - (b.y - a.y) * (c.x - count * a.x);
 }
 
-/// Andrew's monotone chain; counter-clockwise. Of points in the order of `is_before` it leaves out
-/// those that are the same as the one before, and those that are no corner between two others.
+/// Finds a chain around points by Andrew's monotone chain, counter-clockwise. It leaves out points
+/// that are the same as the one before in the order of `is_before`, and those that are no corner
+/// between two others.
 template <class Item, class IsBefore, class IsSame, class IsCorner>
 std::vector<Item> chain_around(std::vector<Item> points, const IsBefore& is_before,
                                const IsSame& is_same, const IsCorner& is_corner) {
@@ -55,7 +56,7 @@ std::vector<Item> chain_around(std::vector<Item> points, const IsBefore& is_befo
   return hull;
 }
 
-/// No three points on one line.
+/// The convex hull; no three of its points are on one line.
 std::vector<Point> convex_hull(std::vector<Point> points, const Measure& measure) {
   const auto compare = [&](const Point& a, const Point& b) {
     const int x = measure.sign(a.x - b.x);
@@ -69,7 +70,7 @@ std::vector<Point> convex_hull(std::vector<Point> points, const Measure& measure
       });
 }
 
-/// Feet in a row along x: the first and the last.
+/// The first and the last of feet in a row along x.
 struct Row {
   std::int32_t y = 0;
   std::int32_t first = 0;
@@ -115,7 +116,7 @@ struct EdgeDistance {
   Point b;
 };
 
-/// `mass` is `count` times as large.
+/// Whether the centre of mass is strictly inside; `mass` is `count` times as large.
 bool contains_strictly(const std::vector<Point>& hull, const Point& mass, std::int64_t count,
                        const Measure& measure) {
   for (std::size_t i = 0; i < hull.size(); ++i) {
@@ -126,7 +127,7 @@ bool contains_strictly(const std::vector<Point>& hull, const Point& mass, std::i
   return true;
 }
 
-/// In half pitches, times `count`.
+/// The edge nearest to the centre of mass, and its distance in half pitches, times `count`.
 EdgeDistance nearest_edge(const std::vector<Point>& hull, const Point& mass, std::int64_t count,
                           const Measure& measure) {
   EdgeDistance nearest;
@@ -242,7 +243,7 @@ void add_corners(const std::array<double, 3>& centre, double half_width,
   }
 }
 
-/// What floating_body() needs to know of a robot.
+/// The facts of a robot that floating_body() needs to know.
 struct FloatingBody {
   double kg = 0;
   /// A node of the robot, that of any module: sums over a thousand modules that are far from where

@@ -16,7 +16,7 @@ namespace {
 
 using Displacements = std::vector<base::Vec6<double>>;
 
-/// Largest load ratio, of all ranks' parts; NaN if one is. `low` as of a Solution.
+/// The largest load ratio of all ranks' parts; NaN if one is. `low` is that of a Solution.
 double load_ratio_max(const model::Robot& robot, const Displacements& u, const Displacements& low) {
   const ConnectionLaws laws(robot);
   double largest = -std::numeric_limits<double>::infinity();
@@ -49,7 +49,7 @@ void widen(LoadRange& range, const model::Robot& robot, const solver::Solution& 
 constexpr LoadRange kEmpty = {.low = std::numeric_limits<double>::infinity(),
                               .high = -std::numeric_limits<double>::infinity()};
 
-/// False for what is not a number.
+/// Whether a range, widened by an error, is on one side of 1; not if it is not a number.
 bool is_on_side(const LoadRange& range, double error, bool is_broken) {
   const double low = range.low - error;
   const double high = range.high + error;

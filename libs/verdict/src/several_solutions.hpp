@@ -4,7 +4,7 @@
 
 #include "situation.hpp"
 
-/// What to say where the paper's contact law has several solutions (theory.md).
+/// Reports where the paper's contact law has several solutions (theory.md).
 namespace holdfast::verdict {
 
 /// Sets `assessment.several` from `assessment.equilibrium`, whose `others` are known, from what

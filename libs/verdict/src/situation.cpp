@@ -15,7 +15,8 @@ bool are_cubes_alike(const model::Robot& robot) {
                    robot.lattice() == base::kCubic && is_alike && robot.carried().empty());
 }
 
-/// What decides: nothing needs to, the support polygon, or the rigid body's contact forces.
+/// Finds the rule that decides: nothing needs to, the support polygon, or the rigid body's contact
+/// forces.
 StabilityRule stability_rule(const model::Robot& robot, bool is_on_flat_floor) {
   const bool is_held =
       host::any(robot.ranks(), robot.fixed_count() > 0 || robot.has_bonded_facets());

@@ -8,8 +8,8 @@
 
 namespace holdfast::verdict {
 
-/// What a verdict on a robot begins with: facts that hold whatever its equilibrium is. They are
-/// found once, and of a part of a robot they are those of the whole, the same at all ranks.
+/// The facts with which a verdict on a robot begins, whatever its equilibrium is. They are found
+/// once; for a part of a robot they are those of the whole, the same at all ranks.
 struct Situation {
   explicit Situation(const model::Robot& robot);
 
@@ -26,7 +26,7 @@ struct Situation {
   StabilityRule rule;
 };
 
-/// assess_rigid_body() of a robot whose situation is known.
+/// Does assess_rigid_body() for a robot whose situation is known.
 RigidBody rigid_body(const Situation& here);
 
 }  // namespace holdfast::verdict

@@ -66,10 +66,11 @@ std::array<double, 2> friction_range(const model::Robot& robot) {
   return {-host::max(ranks, -least), host::max(ranks, most)};
 }
 
-/// By how far gravity can turn over a level floor. With one friction everywhere the body tips over
-/// the nearest edge or slides as a whole, whichever comes first: while the weight meets the floor
-/// within the polygon, its share across can be given to the facets as they press. With several, it
-/// may also turn about where it slips last.
+/// The angle by which gravity can turn before a body on a level floor falls. If friction is the
+/// same everywhere, the body tips over the nearest edge or slides as a whole, whichever comes
+/// first: while the weight meets the floor within the polygon, facets can share its sideways part
+/// in proportion to their pressure. If friction differs, the body may also turn about the facet
+/// that slips last.
 std::optional<double> floor_tilt_deg(const model::Robot& robot, double margin_mm, double height_mm,
                                      bool has_figures) {
   const auto [least, most] = friction_range(robot);
@@ -85,7 +86,8 @@ std::optional<double> floor_tilt_deg(const model::Robot& robot, double margin_mm
   return turned ? std::optional(std::min(tips, *turned)) : std::nullopt;
 }
 
-/// On a flat floor the polygon decides whether the weight is held, whatever the friction.
+/// The rigid body's stability on a flat floor, where the polygon decides whether the weight is
+/// held, whatever the friction.
 limit::RigidStability floor_stability(const model::Robot& robot, const RigidBody& body,
                                       bool has_figures) {
   using limit::RigidAnswer;
@@ -162,7 +164,7 @@ bool holds_by_corners(const model::Robot& robot, std::span<const mechanics::Cont
                         kLineTie * robot.material().pitch_mm);
 }
 
-/// The same on the floor of cubes, in integers.
+/// Decides as holds_by_corners() does, for cubes on a floor, in integers.
 bool holds_by_cube_corners(const model::Robot& robot,
                            std::span<const mechanics::ContactState> contact) {
   mechanics::SupportCorners corners;
@@ -178,8 +180,8 @@ bool holds_by_cube_corners(const model::Robot& robot,
   return all.stable;
 }
 
-/// How far what the facets carry may be off, N: rounding, as a share of the largest of all, and
-/// what the iteration's error in the energy norm can do to the springs of one.
+/// The errors of what the facets carry, N: rounding, as a share of the largest of all, and what the
+/// iteration's error in the energy norm can do to the springs of one.
 class FacetErrors {
  public:
   FacetErrors(const model::Robot& robot, const Equilibrium& equilibrium,
@@ -203,7 +205,8 @@ class FacetErrors {
   double normal_n() const { return normal_n_; }
 
  private:
-  /// As of load ratios, which are sums of the same displacements.
+  /// The rounding error as a share of the largest force. Load ratios, which are sums of the same
+  /// displacements, have the same.
   static constexpr double kForceRounding = 1e-9;
 
   double sideways_n_ = 0;
@@ -216,12 +219,13 @@ struct RankedSlip {
   Slip slip;
 };
 
-/// By how much the solver's error may move the centre of mass sideways: rounding, and by Cauchy and
-/// Schwarz the product of two energy norms, that of the error and that of 1 N sideways which is
-/// shared out as the mass is. The latter is no more than of any way that bears it: down one way of
-/// connections, each with 1 N along and across and with all its moment about the robot's other end.
-/// That way counts as long as from corner to corner of the robot's box, along its edges: of a robot
-/// that winds, whose ways are longer, this is an estimate.
+/// Estimates how far the solver's error may move the centre of mass sideways. Rounding adds a share
+/// of the largest displacement. The iteration adds, by Cauchy and Schwarz, at most the product of
+/// two energy norms: that of its error and that of 1 N sideways, which is distributed as the mass
+/// is. The latter is at most that of any one path that carries this force: a chain of connections,
+/// each of which has 1 N along and across and the whole moment about the robot's other end. The
+/// path is taken to be as long as the edges of the robot's box from corner to corner, so this is no
+/// bound for a robot that winds, whose paths are longer.
 double lean_error_mm(const model::Robot& robot, const Equilibrium& equilibrium) {
   constexpr double kRoundingShare = 1e-9;
   std::array<double, 6> most;  // Coordinates, and less them.

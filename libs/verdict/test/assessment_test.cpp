@@ -59,8 +59,8 @@ TEST(Assessment, counts_the_modules_that_a_vertical_connection_can_hold) {
   EXPECT_EQ(breaks.contact_model, ContactModel::kNone);
 }
 
-/// Against the functions of mechanics, one connection at a time; to the last bit. A section with
-/// unequal moments tells the axes apart.
+/// Loads are compared with the functions of mechanics, one connection at a time, to the last bit. A
+/// section with unequal moments tells the axes apart.
 TEST(Assessment, says_of_every_connection_what_mechanics_says) {
   model::RobotSpec spec{.fixed = {{0, 0, 0}}, .support_z = -10};
   for (const Cell& cell : {Cell{0, 0, 0}, Cell{1, 0, 0}, Cell{1, 1, 0}, Cell{1, 1, 1},
@@ -244,7 +244,7 @@ TEST(Assessment, does_not_depend_on_the_order_of_modules) {
   EXPECT_NEAR(*forward.load_ratio_max, *backward.load_ratio_max, kRounding);
 }
 
-/// A corkscrew that hangs from one module carries what statics says, however soft torsion is: with
+/// A corkscrew that is held by one module carries what statics says, however soft torsion is: with
 /// usual beams, and with 1e-12 of their torsion.
 TEST(Assessment, has_the_truth_in_its_range_where_beams_are_very_soft_one_way) {
   model::RobotSpec spec;
@@ -283,8 +283,8 @@ TEST(Assessment, uses_the_width_of_the_facet_for_both_stability_checks) {
   EXPECT_FALSE(narrow.model.is_stable);
 }
 
-/// Blocks that stand on the ground press on every connection but those on their lowest layers,
-/// where there is nothing but the solver's error: of a true zero no digit is told.
+/// Blocks that stand on the ground press every connection but those of their lowest layers, where
+/// there is nothing but the solver's error: no digit of a true zero is reported.
 TEST(Assessment, tells_nothing_of_a_load_below_its_own_uncertainty) {
   model::RobotSpec tower;
   for (std::int32_t i = 0; i < 3 * 3 * 60; ++i) {

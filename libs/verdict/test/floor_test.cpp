@@ -22,7 +22,7 @@ using model::RobotSpec;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-/// Gravity turned by an angle out of straight down, towards a direction in plan.
+/// The robot under gravity that is turned out of straight down, towards a direction in plan.
 RobotSpec tilted(RobotSpec spec, double degrees, double towards) {
   const double g = spec.material.gravity_m_s2;
   const double across = g * std::sin(degrees * kDegree);
@@ -62,8 +62,8 @@ TEST(TiltOnAFloor, is_the_smaller_of_sliding_and_tipping) {
   EXPECT_NEAR(tilt_of(on_obstacle), std::atan(0.3) / kDegree, 1e-9);
 }
 
-/// Beside the cone of contact forces, which knows no polygon: tilted by a hair less in any
-/// direction it holds; by a hair more it falls, over its edge or, as it slides, in every direction.
+/// The cone of contact forces knows no polygon: tilted by a hair less in any direction the robot
+/// holds; by a hair more it falls, over its edge or, as it slides, in every direction.
 TEST(TiltOnAFloor, is_where_contact_forces_end) {
   constexpr double kHair = 1e-4;  // So near to a cone's side its margin is known.
   int count = 0;
@@ -92,8 +92,8 @@ TEST(TiltOnAFloor, is_where_contact_forces_end) {
   EXPECT_GT(count, test::campaign(10));
 }
 
-/// Where feet differ in friction it lies between those of the least and the most, and is no more
-/// than what holds.
+/// The tilt of feet that differ in friction lies between those of the least and the most, and is no
+/// more than what holds.
 TEST(TiltOnAFloor, of_several_frictions_is_no_more_than_what_holds) {
   RobotSpec spec{.support_z = std::nullopt};
   for (int x = 0; x < 3; ++x) {
@@ -255,10 +255,10 @@ TEST(DisplacedMass, over_the_edge_is_not_safe) {
   EXPECT_EQ(has_warning(stiff), 0);
 }
 
-/// Multigrid that may stop far from the end has the mass where the direct solver has it, within an
-/// error that its margin is less by; so whatever it may be off by, it is not safe beyond the edge.
-/// Of the leaning robot the margin without bending less what bending takes of it, which goes as
-/// 1 / E, is nothing at some E.
+/// Multigrid that stops early finds the mass where the direct solver finds it, within an error that
+/// is taken off its margin, so it never calls a robot safe whose mass is beyond the edge. The
+/// margin of the leaning robot without bending, less what bending takes of it, which goes as 1 / E,
+/// is nothing at some E.
 TEST(DisplacedMass, is_over_its_polygon_by_more_than_the_solver_may_be_off) {
   const Assessment soft = assess(model::Robot::create(leaning(1)).value());
   const double margin = *soft.simplified.margin_mm;
@@ -281,7 +281,7 @@ TEST(DisplacedMass, is_over_its_polygon_by_more_than_the_solver_may_be_off) {
   }
 }
 
-/// Of random robots that are made soft, none is safe whose displaced mass is outside its polygon.
+/// A random soft robot is never safe if its displaced mass is outside its polygon.
 TEST(DisplacedMass, of_a_safe_robot_is_over_its_polygon) {
   int left_count = 0;
   for (int seed = 0; seed < test::campaign(60); ++seed) {

@@ -59,8 +59,8 @@ void expect_alike(const RigidBody& a, const RigidBody& b) {
   EXPECT_EQ(a.polygon.size(), b.polygon.size());
 }
 
-/// Both say the same to the last digit but for the iterations' error, on which it may hang whether
-/// further solutions are found.
+/// The whole and the parts say the same to the last digit but for the iterations' error, on which
+/// it may depend whether further solutions are found.
 void expect_same(model::RobotSpec spec) {
   spec.existing.insert(spec.existing.end(), spec.planned.begin(), spec.planned.end());
   spec.planned.clear();

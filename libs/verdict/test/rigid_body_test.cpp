@@ -115,7 +115,7 @@ TEST(RigidBody, names_the_edge_that_it_topples_over_with_the_polygon_on_its_left
   }
 }
 
-/// Mean x is 2/4 = 1/2 cell: exactly over the edge x = 20 mm.
+/// The mean x is 2/4 = 1/2 cell: exactly over the edge x = 20 mm.
 TEST(RigidBody, with_its_mass_exactly_over_an_edge_is_not_stable) {
   const RigidBody body = assess({.existing = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 2}}});
   EXPECT_FALSE(body.is_stable);
@@ -229,7 +229,8 @@ TEST(RigidBody, has_the_margin_of_the_nearest_line_that_supports_all_corners) {
   }
 }
 
-/// Counter-clockwise, strictly convex, with every corner of every foot inside or on it.
+/// The hull is counter-clockwise and strictly convex, and has every corner of every foot inside or
+/// on it.
 TEST(RigidBody, stands_on_the_convex_hull_of_its_feet) {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     const Robot robot = make(random_robot(seed));
@@ -247,7 +248,7 @@ TEST(RigidBody, stands_on_the_convex_hull_of_its_feet) {
   }
 }
 
-/// Scaled by twice the number of modules all coordinates are integers, so ties agree as well.
+/// All coordinates are integers if scaled by twice the number of modules, so ties agree as well.
 TEST(RigidBody, agrees_with_the_safe_angles_of_its_feet) {
   int stable_count = 0;
   for (std::uint64_t seed = 0; seed < 2000; ++seed) {
@@ -303,7 +304,7 @@ TEST(RigidBody, is_exact_for_facets_that_are_not_as_wide_as_the_pitch) {
   }
 }
 
-/// No 4096th of anything: a third of the pitch, exactly.
+/// The facet may be any share of the pitch, such as a third, which is no multiple of a 4096th.
 TEST(RigidBody, has_the_margin_of_any_facet_to_the_last_digits) {
   for (const double facet : {10.0, 29.0, 30.0, 31.0, 45.0, 1e-12, 1e12}) {
     const RobotSpec spec{.existing = {{0, 0, 0}, {0, 0, 1}},

@@ -55,7 +55,7 @@ TEST(WeakSprings, of_open_facets_do_not_bear_load) {
   }
 }
 
-/// What the springs take is more than the limit is passed by.
+/// The springs take more load than that by which the limit is passed.
 TEST(WeakSprings, make_no_robot_safe_that_breaks) {
   for (const int length : {20, 60, 100}) {
     for (const double load_ratio : {1 + 1e-5, 1 + 1e-4, 1 + 1e-3}) {

@@ -49,7 +49,7 @@ class SharedFile {
     return host::all(ranks_, read(begin, bytes, MPI_File_read_at_all));
   }
 
-  /// The same by this rank alone.
+  /// Reads what this rank asks for, whatever the others do.
   bool read_alone(std::uint64_t begin, std::span<std::byte> bytes) {
     return read(begin, bytes, MPI_File_read_at);
   }

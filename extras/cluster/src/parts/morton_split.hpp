@@ -10,11 +10,11 @@
 
 namespace holdfast::cluster {
 
-/// Of so many modules along the Morton curve the first that belongs to `rank`, of so many ranks;
-/// for a rank past the last how many modules there are. About where ranks have the same number,
-/// but, if it takes no more than a sixteenth of that, where a large cell of keys begins: then
-/// clusters of the finer levels do not cross ranks. key(i) is that of module i. Of fewer modules
-/// than ranks the first rank has all.
+/// Returns the first of `count` modules along the Morton curve that belongs to `rank`, of so many
+/// ranks; `count` for a rank past the last. Ranks have about the same number of modules, but begin
+/// where a large cell of keys begins if that moves no more than a sixteenth of this number: then
+/// clusters of the finer levels do not cross ranks. key(i) is that of module i. If there are fewer
+/// modules than ranks, the first rank has all.
 template <class KeyOf>
 std::size_t split_point(std::size_t count, std::size_t ranks, std::size_t rank, const KeyOf& key) {
   constexpr unsigned kLevelMax = 5;

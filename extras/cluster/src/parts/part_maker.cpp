@@ -41,7 +41,7 @@ std::vector<Item> items_of(const std::vector<std::byte>& bytes) {
   return items;
 }
 
-/// What a rank says of a cell that another one has asked for.
+/// A rank's answer about a cell that another one has asked for.
 struct Answer {
   std::int32_t index = -1;  ///< Among its own modules; -1: there is none.
   std::uint32_t flags = 0;
@@ -131,7 +131,7 @@ class Neighbourhood {
     std::int32_t direction = 0;
   };
 
-  /// What is beside that module.
+  /// The module beside the one that a question asks about.
   struct Beside {
     host::Original original;
     Record record;
@@ -267,7 +267,7 @@ class Neighbourhood {
   std::vector<Record> first_records_;  ///< Of own modules and their neighbours.
 };
 
-/// What the list says of the modules that this rank has, copies included.
+/// Keeps the entries of a list that belong to modules of this rank, copies included.
 template <class Entry, class CellOf>
 void keep_own(std::vector<Entry>& list, const std::map<base::Cell, bool>& is_own, bool with_copies,
               const CellOf& cell_of) {

@@ -10,7 +10,7 @@
 
 namespace holdfast::cluster {
 
-/// How many modules the whole robot has, of all and of some sorts.
+/// The number of modules of the whole robot, of all and of some sorts.
 struct ModuleCounts {
   std::size_t all = 0;
   std::size_t planned = 0;

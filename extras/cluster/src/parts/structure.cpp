@@ -18,7 +18,7 @@ namespace {
 
 using base::at;
 
-/// What the first rank has read, before it is handed out.
+/// The structure that the first rank has read, before it is handed out.
 struct Whole {
   SharedText text;  ///< What all ranks are to know.
   std::vector<Record> records;

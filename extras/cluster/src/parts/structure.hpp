@@ -19,7 +19,7 @@ namespace holdfast::cluster {
 /// A module, in files and between ranks.
 using Record = io::ModuleRecord;
 
-/// What a rank has of a structure.
+/// A rank's part of a structure.
 struct Structure {
   std::string name;
   model::RobotSpec common;  ///< Without modules: all ranks have the same.
@@ -27,7 +27,7 @@ struct Structure {
   std::vector<Record> records;
   base::Cell low;  ///< The whole robot's lowest corner, in bricks.
   std::vector<std::string> warnings;
-  /// The same for the same whole structure, on however many ranks; else another number.
+  /// A number that identifies the whole structure, on however many ranks.
   std::uint64_t fingerprint = 0;
 };
 

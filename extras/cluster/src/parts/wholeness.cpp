@@ -74,7 +74,7 @@ std::size_t number_pieces(const model::Robot& robot, std::vector<std::int32_t>& 
   return first.back();
 }
 
-/// How many pieces the whole robot is in.
+/// The number of pieces that the whole robot is in.
 std::size_t count_pieces(const model::Robot& robot) {
   std::vector<std::int32_t> piece;
   const std::size_t count = number_pieces(robot, piece);

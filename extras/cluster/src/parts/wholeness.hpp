@@ -9,8 +9,8 @@
 
 namespace holdfast::cluster {
 
-/// What is wrong with a robot as a whole: it is in pieces, or nothing holds it. The same at all
-/// ranks; none if nothing is wrong.
+/// Says what is wrong with a robot as a whole: it is in pieces, or nothing holds it. The answer is
+/// the same at all ranks; none if nothing is wrong.
 std::optional<std::string> find_fault(const model::Robot& robot);
 
 }  // namespace holdfast::cluster

@@ -22,7 +22,7 @@ namespace {
 constexpr int kFirstCode = 150;
 constexpr int kCodeCount = 75;
 
-/// Set for the ranks that launch() starts.
+/// The environment variable that launch() sets for the ranks that it starts.
 constexpr const char* kLaunched = "HOLDFAST_MPI_LAUNCHED";
 
 constexpr std::string_view kOurs = "holdfast-mpi: ";
@@ -79,7 +79,7 @@ std::vector<std::string> lines_from(int descriptor) {
   return lines;
 }
 
-/// Of all that was said the one line that says why there is no verdict.
+/// The one line of all that was printed that says why there is no verdict.
 std::string cause(const std::vector<std::string>& lines) {
   const auto find = [&](std::string_view part) {
     const auto found = std::ranges::find_if(

@@ -10,9 +10,8 @@
 /// whoever calls it gets one exit code and one line of what failed, whatever MPI does.
 namespace holdfast::cluster {
 
-/// If the arguments say --ranks: runs the others under mpirun, on so many ranks, and returns the
-/// exit code: the program's own, or 70 where the ranks were ended by something else. None if they
-/// do not say it.
+/// Runs the command under mpirun on as many ranks as --ranks says, and returns the exit code: the
+/// program's own, or 70 if something else has ended the ranks. Returns none if there is no --ranks.
 std::optional<int> launch(const std::vector<std::string>& arguments);
 
 /// The exit code of a rank: that of the program, or, started by launch(), one that mpirun does not

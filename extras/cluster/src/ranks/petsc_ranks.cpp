@@ -57,7 +57,7 @@ int int_count(std::size_t count) {
   return static_cast<int>(count);
 }
 
-/// Where each rank's part begins, and at the end how much it is in all.
+/// The places where the ranks' parts begin, and at the end the size of all.
 std::vector<int> starts_of(const std::vector<int>& counts) {
   std::vector<int> start = {0};
   std::size_t sum = 0;
@@ -283,7 +283,7 @@ void PetscRanks::run_solver(const host::KrylovTask& task, std::span<const double
   task_ = nullptr;
 }
 
-/// What a monitor gets to see: b is the residual with which the method begins.
+/// Runs the method under PETSc's monitors; b is the residual with which it begins.
 void PetscRanks::watch(const host::KrylovTask& task) {
   KSPSetInitialGuessNonzero(solver_, PETSC_TRUE);
   std::vector<double> b(task.x.size());

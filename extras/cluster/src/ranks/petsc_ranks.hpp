@@ -13,7 +13,7 @@
 
 namespace holdfast::cluster {
 
-/// What a rank has told others so far.
+/// The amount that a rank has exchanged with others so far.
 struct Traffic {
   std::size_t halo_count = 0;  ///< Updates of copies.
   std::size_t halo_bytes = 0;  ///< Received in them.
@@ -49,7 +49,7 @@ class PetscRanks final : public host::Ranks {
   void watch(const host::KrylovTask& task) override;
   bool solve(const host::KrylovTask& task, std::span<const double> b, std::span<double> x) override;
 
-  /// To each rank its bytes; returns what each has for this one.
+  /// Sends each rank its bytes; returns what each has for this one.
   std::vector<std::vector<std::byte>> exchange(const std::vector<std::vector<std::byte>>& to);
 
  private:

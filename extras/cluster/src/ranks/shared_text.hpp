@@ -11,7 +11,7 @@
 
 namespace holdfast::cluster {
 
-/// What all ranks know of a structure besides its modules, or why there is none.
+/// The text that all ranks know of a structure besides its modules, or the error why there is none.
 struct SharedText {
   std::string
       document;    ///< holdfast JSON, with those modules only that have something of their own.

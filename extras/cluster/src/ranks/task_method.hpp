@@ -10,7 +10,7 @@
 /// the task.
 namespace holdfast::cluster {
 
-/// Its KSPType.
+/// The KSPType of the method.
 inline constexpr const char* kTaskMethod = "holdfast";
 
 /// Makes it known to PETSc; once is enough, more often does no harm.

@@ -29,15 +29,15 @@ struct RefusedMessages {
   int count_of_cell = 0;    ///< By that module.
 };
 
-/// What Effort::ratio_error, beside rounding to single precision, says of the largest load ratio by
-/// the law that it is of.
+/// The meaning of Effort::ratio_error, beside rounding to single precision, for the largest load
+/// ratio under the robot's contact law.
 enum class ErrorKind : std::uint8_t {
   kBound,     ///< The robot is statically determinate: no error is larger.
   kEstimate,  ///< It was too small in 4 of 1,844 random robots, by 14 times at most.
 };
 
-/// Why the robot answers otherwise than the exact answer: another verdict, another contact law, or
-/// a largest load ratio that is further away than is promised of one law.
+/// The reason why the robot answers otherwise than the exact answer: another verdict, another
+/// contact law, or a largest load ratio that differs by more than is promised for one law.
 enum class Difference : std::uint8_t {
   kNone,             ///< It does not.
   kModules,          ///< The exact answer is for modules that were taken off, too.
@@ -53,7 +53,7 @@ struct DistributedRun {
   sim::LinkModel link;
   sim::SimulationResult result;
   RefusedMessages refused;
-  /// What the robot knows, in the form of an assessment: its verdict, and its own load ratios where
+  /// The robot's knowledge in the form of an assessment: its verdict, and its own load ratios where
   /// it has come to know any.
   verdict::Assessment view;
   std::vector<std::string> notes;  ///< What to know when comparing with the exact answer.
@@ -65,7 +65,7 @@ struct DistributedRun {
   Difference difference = Difference::kNone;
 };
 
-/// What is done to a robot while it computes.
+/// A change that is made to a robot while it computes.
 struct Change {
   enum class Kind : std::uint8_t {
     kAttach,    ///< A module comes to the cell.
@@ -85,9 +85,9 @@ struct ChangedStructure {
   std::vector<sim::Fault> attachments;
 };
 
-/// What becomes of a structure: with the modules that are attached, behind all others, and the
-/// plans that are neither fulfilled nor withdrawn then. The first module of the file is told of
-/// plans. Errors: a module is attached to an occupied cell; what there is in the end is no robot;
+/// Returns the structure after the changes: with the modules that are attached, behind all others,
+/// and the plans that are neither fulfilled nor withdrawn then. The first module of the file is
+/// told of plans. Errors: a module is attached to an occupied cell; there is no robot in the end;
 /// the robot goes beyond [Piranda 2021], see model::find_beyond_paper().
 base::Result<ChangedStructure> with_changes(const Structure& structure,
                                             std::vector<Change> changes);
@@ -98,12 +98,13 @@ struct Agents {
   std::int32_t count = 0;
 };
 
-/// What a robot has come to whose agents were run elsewhere, with these options.
+/// Describes the result of a robot whose agents were run elsewhere, with these options.
 DistributedRun describe_run(const model::Robot& robot, const CheckResult& exact,
                             const sim::SimulationOptions& options, const Agents& agents,
                             const sim::SimulationResult& result);
 
-/// Called now and then during a long simulation; false ends it.
+/// A function that is called now and then during a long simulation, and ends it if it returns
+/// false.
 using SimulationProgress = std::function<bool(const sim::SimulationResult&)>;
 
 /// Simulates the robot's own computation. `exact` gives what the robot does not work out (margin,
@@ -141,11 +142,11 @@ verdict::Verdict to_verdict(agent::Verdict verdict);
 /// verdict is neither `safe` nor `overload`.
 std::optional<double> load_ratio_max(const agent::Answer& answer);
 
-/// "bound", "estimate".
+/// Returns "bound" or "estimate".
 const char* name(ErrorKind kind);
 
-/// "none", "modules", "robot_undecided", "exact_undecided", "contact_law", "other_solutions",
-/// "unstable_by_model", "unexplained".
+/// Returns "none", "modules", "robot_undecided", "exact_undecided", "contact_law",
+/// "other_solutions", "unstable_by_model" or "unexplained".
 const char* name(Difference difference);
 
 /// "elimination", "polynomial", "cg", "block-jacobi", "jacobi", and back.

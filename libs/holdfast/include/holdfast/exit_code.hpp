@@ -4,7 +4,7 @@
 
 #include "holdfast/holdfast.hpp"
 
-/// What the programs holdfast and holdfast-mpi end with.
+/// Defines the exit codes of the programs holdfast and holdfast-mpi.
 namespace holdfast {
 
 // From 64 on those of sysexits.h.
@@ -15,7 +15,7 @@ inline constexpr int kExitUsage = 64;
 inline constexpr int kExitBadInput = 65;
 inline constexpr int kExitFailure = 70;  ///< Out of memory, a fault of the program, a dead rank.
 
-/// What a program ends with when this is the verdict.
+/// The exit code of a program for a verdict.
 inline int exit_code(verdict::Verdict verdict) {
   switch (verdict) {
     case verdict::Verdict::kSafe:

@@ -8,7 +8,7 @@
 
 #include "holdfast/base/result.hpp"
 
-/// How the names of files end.
+/// Knows how the names of files end.
 namespace holdfast {
 
 enum class FileFormat : std::uint8_t {
@@ -22,8 +22,8 @@ enum class FileFormat : std::uint8_t {
   kHtml,
 };
 
-/// What is wrong if a file's name ends as files of another format do: what is written into arm.png
-/// as SVG is read by nobody. Other endings, and none, are free.
+/// Returns an error if a file's name ends as files of another format do: nobody can read an SVG
+/// that is called arm.png. Other endings, and none, are allowed.
 std::optional<base::Error> find_foreign_ending(FileFormat format, std::string_view path);
 
 }  // namespace holdfast

@@ -85,25 +85,27 @@ struct RobotCells {
 };
 
 /// Makes a robot without a file. Its modules are the existing ones, then the planned ones, each in
-/// the order given. Errors: as of model::Robot::create. 0 threads: as many as there are cores.
+/// the order given. Errors: those of model::Robot::create. 0 threads: as many as there are cores.
 base::Result<model::Robot> make_robot(const RobotCells& cells, int thread_count = 0);
 
-/// How to check, where the defaults do not do.
+/// The options of a check.
 struct CheckOptions {
   /// The ground holds like a module below would: supports neither lift nor tilt.
   bool is_bonded = false;
-  /// 0: as many as the machine has cores. The result does not depend on it.
+  /// The number of threads, on which the result does not depend; 0: as many as the machine has
+  /// cores.
   int thread_count = 0;
-  /// More than this is not taken; the verdict is then `undecided`.
+  /// The most memory that a check takes; the verdict is `undecided` if it needs more.
   std::size_t memory_bytes_max = solver::EquilibriumOptions{}.memory_bytes_max;
   /// Proves the largest load ratio; a verdict that is not proved becomes `undecided`.
   bool is_proof_wanted = false;
   /// Seeks the limit load: the largest factor of all loads that any forces could balance.
   bool is_limit_wanted = false;
   double limit_seconds_max = limit::LimitOptions{}.seconds_max;
-  /// Called while the limit load is sought, with what it is known to lie between.
+  /// A function that is called while the limit load is sought, with the bounds that are known.
   std::function<void(double low, double high)> limit_progress = {};
-  /// Called while a large robot is solved, with the share of the first error that is left.
+  /// A function that is called while a large robot is solved, with the share of the first error
+  /// that is left.
   std::function<void(int iteration, double error)> progress = {};
 };
 
@@ -138,7 +140,7 @@ base::Result<Structure> load_file(const std::filesystem::path& path, int thread_
                                   const io::ReadOptions& options = {});
 
 /// Builds the robot of a document with its first planned step, as load_text() does of what it has
-/// read. `name` is for a document without one. Errors: as of io::make_robot.
+/// read. `name` is for a document without one. Errors: those of io::make_robot.
 base::Result<Structure> make_structure(io::Document document, std::string_view name = {},
                                        int thread_count = 0);
 
@@ -147,7 +149,7 @@ base::Result<Structure> make_structure(io::Document document, std::string_view n
 /// family, a size that is not allowed.
 base::Result<io::Document> generate(std::string_view family, std::size_t size);
 
-/// Name and meaning of the size of each family, in the order of their list.
+/// The name of each family and the meaning of its size, in the order of their list.
 std::vector<std::pair<std::string_view, std::string_view>> family_list();
 
 CheckResult check(const model::Robot& robot, const CheckOptions& options = {});
@@ -175,7 +177,7 @@ struct Rows {
   }
 };
 
-/// What every connection carries, in the order of Robot::connections(), as the members of
+/// The loads of every connection, in the order of Robot::connections(), as the members of
 /// verdict::ConnectionResult: load ratio, axial force (N), bending moment (N mm), shear force (N),
 /// torsional moment (N mm). No rows where no equilibrium is known.
 Rows connection_rows(const CheckResult& result);
@@ -185,12 +187,13 @@ Rows connection_rows(const CheckResult& result);
 std::vector<model::Limit> connection_limits(const model::Robot& robot,
                                             const verdict::Assessment& assessment);
 
-/// How far every module moves, in the order of Robot::modules(): along x, y, z in mm, about x, y, z
-/// in rad. No rows where no equilibrium is known.
+/// The displacement of every module, in the order of Robot::modules(): along x, y, z in mm, about
+/// x, y, z in rad. No rows where no equilibrium is known.
 Rows displacement_rows(const CheckResult& result);
 
-/// What the ground does to every module, in the same order: force in N, moment about the module's
-/// centre in N mm. Made of what its facets carry. Empty where no equilibrium is known.
+/// The force of the ground on every module, in the order of Robot::modules(): force in N, moment
+/// about the module's centre in N mm, made of what its facets carry. Empty where no equilibrium is
+/// known.
 std::vector<base::Vec6<double>> ground_forces(const model::Robot& robot, const CheckResult& result);
 
 /// The certificate of a check's proof, for holdfast-checker; see docs/formats.md. Errors: there is

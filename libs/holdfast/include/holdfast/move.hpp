@@ -21,7 +21,7 @@
 ///     }
 namespace holdfast {
 
-/// How modules may go and how long a plan is sought.
+/// The rules by which modules may go, and the time for which a plan is sought.
 struct MoveRequest {
   bool pivots = false;  ///< As of plan::MoveTask, all three.
   std::optional<plan::CellBox> within = {};
@@ -34,12 +34,12 @@ struct MoveRequest {
   std::function<void(std::size_t states, int distance)> progress = {};
 };
 
-/// Seeks moves from the shape of one document to that of another. Errors: as of io::move_task() and
-/// plan::find_moves().
+/// Seeks moves from the shape of one document to that of another. Errors: those of io::move_task()
+/// and plan::find_moves().
 base::Result<io::MoveReport> seek_moves(const io::Document& start, const io::Document& target,
                                         const MoveRequest& request = {});
 
-/// What a certificate has proved, and of which robots.
+/// The claims that a certificate has proved, and of which robots.
 struct ProvedMoves {
   std::string start_name;  ///< As the documents say; may be empty, both.
   std::string target_name;
@@ -52,7 +52,7 @@ struct ProvedMoves {
 base::Result<ProvedMoves> verify_moves(const io::Document& start, const io::Document& target,
                                        const MoveRequest& request, std::string_view report);
 
-/// What is proved, of which robot and under which rules, for people.
+/// Says for people what is proved, of which robot and under which rules.
 std::string proved_text(const ProvedMoves& proved);
 
 }  // namespace holdfast

@@ -40,30 +40,30 @@ struct OrderRequest {
   /// kExactModuleCount modules, most of whose states are certified by a bound.
   bool is_exact = false;
   int thread_count = 0;  ///< 0: as many as the machine has cores; decides nothing.
-  /// Asked all the time, by several threads; once it says so the search ends, and what has been
-  /// found by then is the answer.
+  /// A function that several threads call all the time; once it returns true the search ends, and
+  /// its answer is what has been found by then.
   std::function<bool()> is_interrupted = {};
   std::function<void(std::size_t states, std::size_t grown, std::size_t shrunk)> progress = {};
 };
 
-/// Seeks an order for all modules of a document, existing or planned. Errors: as of
+/// Seeks an order for all modules of a document, existing or planned. Errors: those of
 /// io::make_spec() and plan::find_robot_order().
 base::Result<io::OrderReport> seek_order(const io::Document& target, const OrderRequest& request);
 
-/// What a certificate has proved, and of which robot.
+/// The claims that a certificate has proved, and of which robot.
 struct ProvedOrder {
   std::string name;  ///< As the certificate says; may be empty.
   plan::OrderTask task;
   plan::CertificateCheck check;
 };
 
-/// Replays the certificate in a text, see plan::verify(). Of another robot than `target` it is an
-/// error.
+/// Replays the certificate in a text, see plan::verify(). Error: it is of another robot than
+/// `target`.
 base::Result<ProvedOrder> verify_order_certificate(
     std::string_view text, const std::optional<model::RobotSpec>& target = {},
     int thread_count = 0);
 
-/// What is proved, of which robot and under which rules, for people.
+/// Says for people what is proved, of which robot and under which rules.
 std::string proved_text(const ProvedOrder& proved);
 
 }  // namespace holdfast

@@ -10,12 +10,12 @@
 #include "holdfast/distributed.hpp"
 #include "holdfast/trial.hpp"
 
-/// Where next, by the robot itself: a simulated robot judges all its free faces together, behind
-/// its verdict (holdfast/agent/free_faces.hpp). What that leaves undecided can be planned, judged
-/// and withdrawn, one cell after the other, by the same robot.
+/// Finds the next places by the robot itself: a simulated robot judges all its free faces together,
+/// after its verdict (holdfast/agent/free_faces.hpp). The same robot can plan, judge and withdraw
+/// the cells that this leaves undecided, one after the other.
 namespace holdfast {
 
-/// What something took the robot.
+/// The effort that something took the robot.
 struct RobotEffort {
   sim::Time time = 0;
   std::uint64_t rounds = 0;  ///< By how much the longest chain of packets has grown.
@@ -27,7 +27,7 @@ struct SimulatedNext {
   agent::Answer answer = {};  ///< Of the robot as it is.
   bool all_agree = false;
   std::uint16_t depth = 0;  ///< Of its tree: a sweep is twice as many rounds.
-  /// What the modules beside them show of all free cells, best first.
+  /// The answers of the modules beside all free cells, best first.
   NextResult next;
   std::size_t hanging_count = 0;        ///< Candidates with one neighbour, above the ground.
   std::size_t shown_count = 0;          ///< Candidates that were decided all together.
@@ -43,11 +43,11 @@ struct SimulatedNext {
   }
 };
 
-/// How to simulate it.
+/// The options of the simulation.
 struct SimulatedNextOptions {
   sim::SimulationOptions simulation = {};
   bool tries_others = true;  ///< Whether cells that stay undecided are planned in turn.
-  /// Called with how many cells have been planned, of how many.
+  /// A function that is called with the number of cells that have been planned, and of all.
   std::function<void(std::size_t done, std::size_t count)> progress = {};
 };
 

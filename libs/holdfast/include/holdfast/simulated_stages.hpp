@@ -17,7 +17,7 @@
 /// (agent/stages.hpp). The exact answers of plan/sequence.hpp stand beside its own.
 namespace holdfast {
 
-/// What the robot says of one step.
+/// The robot's answers on one step.
 struct SimulatedStep {
   std::array<agent::Answer, plan::kStageCount> stages = {};  ///< By plan::Stage.
   agent::Answer answer = {};           ///< On the step as a whole: that of the stage that fails.
@@ -41,7 +41,7 @@ struct SimulatedStages {
   /// The first stage that is undecided, of those before it.
   std::optional<plan::StageId> first_undecided() const;
 
-  /// kSafe, kUndecided, or that of the first unsafe stage.
+  /// Returns kSafe, kUndecided, or the verdict of the first unsafe stage.
   verdict::Verdict verdict() const;
 };
 
@@ -51,14 +51,14 @@ base::Result<std::vector<agent::StepWord>> step_words(const plan::RobotState& be
                                                       const model::Step& step,
                                                       const plan::Transition& transition);
 
-/// Has a simulated robot judge one step. Errors: as of step_words(); the robot has what the
+/// Lets a simulated robot judge one step. Errors: those of step_words(); the robot has what the
 /// modules' program does not know; options that do not fit.
 base::Result<SimulatedStep> simulate_step(const plan::RobotState& before, const model::Step& step,
                                           const plan::Transition& transition,
                                           const sim::SimulationOptions& options);
 
-/// Has a simulated robot judge one step after the other, each time the robot that the steps before
-/// have made of it. Errors: as of simulate_step() and judge_steps().
+/// Lets simulated robots judge one step after the other, each the robot that the steps before have
+/// made. Errors: those of simulate_step() and judge_steps().
 base::Result<SimulatedStages> simulate_stages(
     const StepsFile& file, const sim::SimulationOptions& options,
     const std::function<void(std::size_t step)>& progress = {});
@@ -67,7 +67,7 @@ base::Result<SimulatedStages> simulate_stages(
 std::string simulated_stages_text(const StepsFile& file, const SimulatedStages& stages,
                                   const TextOptions& options = {});
 
-/// Keys as of write_steps_json() where they mean the same.
+/// Writes the keys of write_steps_json() where they mean the same.
 void write_simulated_stages_json(std::ostream& out, const StepsFile& file,
                                  const SimulatedStages& stages);
 

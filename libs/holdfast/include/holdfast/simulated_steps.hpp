@@ -15,7 +15,7 @@
 /// (agent::Setup::keeps_answers); the same robot without that runs beside it.
 namespace holdfast {
 
-/// What one robot says of a change, and what that took it.
+/// One robot's answer on a change, and the effort that it took.
 struct StepAnswer {
   agent::Answer answer = {};
   bool all_agree = false;     ///< Every module says so.
@@ -40,13 +40,13 @@ struct StepChange {
 struct SimulatedSteps {
   sim::LinkModel link = {};
   std::vector<StepChange> changes = {};  ///< The first is the start.
-  /// Over the steps: the median of the time with what is kept over that from nothing. A step is all
-  /// its changes.
+  /// The median over the steps of the time with kept answers over the time from nothing. A step's
+  /// time is that of all its changes.
   double time_share_median = 0;
   std::size_t bytes_per_module = 0;
 };
 
-/// "start", "plan", "attach", "detach".
+/// Returns "start", "plan", "attach" or "detach".
 const char* name(StepChange::Kind kind);
 
 /// Simulates all steps: what a step detaches goes first, all at once, then what it attaches is

@@ -28,7 +28,8 @@ struct StepsFile {
   std::vector<std::string> warnings;
 };
 
-/// Reads VisibleSim XML, holdfast JSON or binary. Errors: as of read_document(); there is no step.
+/// Reads VisibleSim XML, holdfast JSON or binary. Errors: those of read_document(); there is no
+/// step.
 base::Result<StepsFile> load_steps(const std::filesystem::path& path,
                                    const io::ReadOptions& options = {});
 

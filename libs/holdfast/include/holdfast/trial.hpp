@@ -28,7 +28,7 @@
 ///     }
 namespace holdfast {
 
-/// What a module that is added to a robot becomes.
+/// The role that a module gets that is added to a robot.
 enum class Role : std::uint8_t { kExisting, kPlanned, kFixed };
 
 /// Adds a module behind the others of its role. Robot::create tells whether it can be there.
@@ -38,18 +38,18 @@ void add_module(model::RobotSpec& spec, const base::Cell& cell, Role role);
 /// Below the ground there are such cells as well: try_cells() tells where a module can be.
 std::vector<base::Cell> free_cells(const model::RobotSpec& spec);
 
-/// What the rigid body alone says, at once and whatever the size: `unstable` for a robot that
-/// topples, else `undecided`, as no load is known.
+/// Returns the answer of the rigid body alone, at once and whatever the size: `unstable` for a
+/// robot that topples, else `undecided`, as no load is known.
 verdict::Assessment first_look(const model::Robot& robot);
 
-/// What a robot becomes with one more module.
+/// The result of adding one more module to a robot.
 struct Trial {
   base::Cell cell;
-  /// False if there is no such robot: the cell is taken, touches nothing, lies too low. The rest is
-  /// void then.
+  /// Whether there is such a robot: not if the cell is taken, touches nothing or lies too low. The
+  /// rest is void then.
   bool is_robot = false;
   verdict::Verdict verdict = verdict::Verdict::kUndecided;
-  /// None for a robot that topples, which needs no loads, and where no load is known.
+  /// The largest load ratio; none where no load is known, as for a robot that topples.
   std::optional<double> load_ratio_max = {};
   /// The margin of verdict::RigidBody in mm: negative for a robot that topples, none for one that
   /// is fixed.
@@ -80,14 +80,14 @@ class CellTrials {
 std::vector<Trial> try_cells(const model::RobotSpec& spec, std::span<const base::Cell> cells,
                              Role role = Role::kPlanned, const CheckOptions& options = {});
 
-/// How to look for places, where the defaults do not do.
+/// The options of a search for places.
 struct NextOptions {
   CheckOptions check = {};
-  /// Called now and then with how many places are judged, of how many.
+  /// A function that is called now and then with the number of places that are judged, and of all.
   std::function<void(std::size_t done, std::size_t count)> progress = {};
 };
 
-/// Where the next module may go.
+/// The places where the next module may go.
 struct NextResult {
   /// All free cells beside the robot where a module can be, best first: the safe by ascending load
   /// ratio, then those undecided, overloaded and unstable, these by descending margin.
@@ -102,7 +102,7 @@ struct NextResult {
 /// Judges every free cell beside a structure with its planned modules attached.
 NextResult find_next(const Structure& structure, const NextOptions& options = {});
 
-/// How many candidates a report lists at most, the first ones; 0: all.
+/// The number of candidates, the first ones, that a report lists at most; 0: all.
 struct NextReportOptions {
   std::size_t count_max = 0;
 };

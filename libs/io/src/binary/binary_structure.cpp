@@ -21,21 +21,21 @@ static_assert(std::endian::native == std::endian::little, "the format is little-
 
 constexpr std::uint64_t kTextSizeMax = std::uint64_t{1} << 30U;
 
-/// Beyond this the file is not what it seems.
+/// The number of modules beyond which the file is not what it seems.
 constexpr std::uint64_t kModuleCountMax = std::uint64_t{1} << 40U;
 
 std::uint64_t sum_of(const BinaryHead& head) {
   return text_sum({reinterpret_cast<const char*>(&head), offsetof(BinaryHead, head_sum)});
 }
 
-/// splitmix64's mixing.
+/// Mixes a word as splitmix64 does.
 std::uint64_t mixed(std::uint64_t word) {
   word = (word ^ word >> 30U) * 0xbf58476d1ce4e5b9U;
   word = (word ^ word >> 27U) * 0x94d049bb133111ebU;
   return word ^ word >> 31U;
 }
 
-/// Beyond this a lowest corner is none of a robot: bricks of leaning lattices reach further than
+/// The largest coordinate of a robot's lowest corner: bricks of sheared lattices reach further than
 /// their cells.
 constexpr std::int32_t kLowMax = 4 * base::kCoordinateMax;
 
@@ -44,7 +44,7 @@ bool is_within(const base::Cell& cell, std::int32_t most) {
   return is_near(cell.x) && is_near(cell.y) && is_near(cell.z);
 }
 
-/// What is wrong with a record wherever it stands; null if nothing is.
+/// Says what is wrong with a record wherever it stands; null if nothing is.
 const char* find_own_fault(const ModuleRecord& record, const solver::Bricks& bricks,
                            const base::Cell& low) {
   if (!is_within(record.place(), base::kCoordinateMax)) {

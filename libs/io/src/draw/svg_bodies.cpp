@@ -63,8 +63,8 @@ std::string circle(ScreenPoint centre, double radius, std::string_view attribute
                      number(centre.y), number(radius), attributes);
 }
 
-/// Light falls from above and from the left: a dark edge on the right, and where it shines a spot.
-/// Circles of one colour each, as gradients would need names.
+/// Draws a ball in the light from above and from the left: a dark edge on the right, and a spot
+/// where it shines. The circles have one colour each, as gradients would need names.
 std::string draw_ball(ScreenPoint centre, double radius, Color color, bool is_detailed) {
   const auto inner = [&](double share, double aside, Color fill) {
     return circle(centre + ScreenPoint{-0.75 * aside * radius, -aside * radius}, share * radius,

@@ -12,7 +12,7 @@
 namespace holdfast::io {
 namespace {
 
-/// What a facet that touches something does.
+/// The state of a facet that touches something.
 enum class FacetState : std::uint8_t { kPresses, kTilts, kOpen, kBonded, kUnknown };
 
 struct FacetLook {

@@ -13,7 +13,8 @@ namespace {
 constexpr double kGridPxMin = 9;
 constexpr double kNumberPxMin = 25;
 
-/// 1, 2, 5, 10, 20... cells, so that `px` apart; no more than leave room for a sum of two.
+/// The step of the grid, 1, 2, 5, 10, 20... cells, that is at least `px` wide; limited so that a
+/// sum of two does not overflow.
 std::int32_t step_for(double edge_px, double px) {
   constexpr std::int32_t kStepMax = 500'000'000;
   std::int32_t step = 1;

@@ -58,7 +58,7 @@ PlanRange plan_range(const model::Robot& robot) {
   return range;
 }
 
-/// Around everything that is drawn of bodies.
+/// Widens the extent by all bodies that are drawn.
 void add_bodies(const BodyView& view, const base::Cell& lowest, Extent& extent) {
   constexpr double kAcross = kBallRadius / kCos30;  // Of u; v is twice the height.
   const auto add_faces = [&](std::span<const SeenFace> faces, double u, double v) {
@@ -111,7 +111,7 @@ Extent extent_of(const Scene& scene) {
   return extent;
 }
 
-/// As large as fits, in the middle of the drawing.
+/// Scales the scene so that it fills the drawing, up to kEdgePxMax, and centres it.
 void lay_out(Scene& scene) {
   const Extent extent = extent_of(scene);
   const double u_span = extent.u_max - extent.u_min;

@@ -12,7 +12,7 @@
 #include "shapes/svg_text.hpp"
 #include "shapes/visible_surface.hpp"
 
-/// Where everything goes on the card: header, drawing, legend from top to bottom.
+/// Lays out the card: header, drawing, legend from top to bottom.
 namespace holdfast::io {
 
 /// Beyond this many modules lines are thinner, and modules have no tooltips.
@@ -39,7 +39,7 @@ struct LatticePoint {
   double z = 0;
 };
 
-/// From the lattice to pixels.
+/// The map from lattice coordinates to pixels.
 struct Projection {
   base::Cell lowest;      ///< Whose lower corner is the origin of (u, v); cubic lattices only.
   double edge_px = 1;     ///< Length of a cube's edge on the picture.
@@ -84,13 +84,13 @@ struct Scene {
   double card_width = 0;
   Box drawing;  ///< Pixels that the drawing may use.
 
-  /// Of the plane of the support polygon, if there is one.
+  /// The height of the plane of the support polygon, if there is one.
   double ground_z() const;
 
-  /// Of the floor, if there is one.
+  /// The height of the floor, if there is one.
   double floor_z() const;
 
-  /// Something rests on the ground, so there is a support polygon.
+  /// Whether something rests on the ground, so that there is a support polygon.
   bool has_polygon() const { return !assessment.simplified.polygon.empty(); }
 
   /// The floor is shown as a plane: something touches it, and nothing hangs below it.
@@ -111,10 +111,10 @@ struct Scene {
   /// Whether the robot is drawn over this pixel.
   bool covers(ScreenPoint point) const;
 
-  /// How much of a box the robot covers, 0 to 1, from samples.
+  /// The share of a box that the robot covers, 0 to 1, from samples.
   double covered_share(const Box& box) const;
 
-  /// Opacity of planned modules, or of ghosts, through which the robot has to be seen.
+  /// The opacity of planned modules, or of ghosts, through which the robot has to be seen.
   const char* glass() const { return ghost_count > 0 ? "0.3" : "0.7"; }
 
   bool is_ghost(std::size_t module) const { return module + ghost_count >= robot.modules().size(); }

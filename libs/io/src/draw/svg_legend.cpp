@@ -135,7 +135,7 @@ Entry facet_entry(const FacetSign& sign) {
           }};
 }
 
-/// Only what occurs in the picture.
+/// The entries for what occurs in the picture.
 std::vector<Entry> entries(const Scene& scene) {
   std::vector<Entry> list;
   constexpr std::array<std::tuple<Meaning, const char*, Color>, 4> kColors = {

@@ -27,7 +27,7 @@ struct PayloadSign {
 
 double size_of(const Place& vector) { return std::sqrt(dot(vector, vector)); }
 
-/// What acts on a module besides its weight.
+/// The payload of a module: what acts on it besides its weight.
 PayloadSign payload_of(const model::Robot& robot, std::size_t module) {
   const auto& load = robot.loads()[module];
   PayloadSign sign = {.module = module,

@@ -23,7 +23,7 @@ struct SharedFace {
   std::vector<ScreenPoint> corners;
 };
 
-/// Of cubes, whose connection runs along an axis.
+/// The face that two cubes share, which is a square across the axis of their connection.
 std::vector<Place> square_across(std::size_t axis) {
   const auto corner = [&](double first, double second) {
     Place place{};
@@ -34,7 +34,7 @@ std::vector<Place> square_across(std::size_t axis) {
   return {corner(-0.5, -0.5), corner(0.5, -0.5), corner(0.5, 0.5), corner(-0.5, 0.5)};
 }
 
-/// Of balls and discs, which share a point or a line: a circle around it.
+/// A circle around the point or line that two balls or discs share.
 std::vector<Place> circle_across(const base::Lattice& lattice, base::Direction direction) {
   constexpr int kCorners = 16;
   constexpr double kRadius = 0.28;
@@ -118,7 +118,7 @@ bool marks_loads(const Scene& scene) {
          *assessment.load_ratio_max >= kNoLoad;
 }
 
-/// How strongly the worst connection is marked: where it holds, discreetly.
+/// The style of the worst connection's mark, which is discreet where the connection holds.
 struct WorstStyle {
   bool is_broken = false;
   const char* color = kInk;
@@ -181,7 +181,8 @@ bool is_inside(const Box& inner, const Box& outer) {
          inner.bottom <= outer.bottom;
 }
 
-/// Where the label costs least: hiding the robot or the signs of balance, or lying far away.
+/// Finds the place where the label costs least: it hides neither the robot nor the signs of
+/// balance, and is not far away.
 ScreenPoint place_label(const Scene& scene, const Callout& callout, double width) {
   // Sixteen directions; those upwards first, for equal costs.
   constexpr std::array<ScreenPoint, 16> kDirections = {{{0.71, -0.71},

@@ -12,10 +12,11 @@
 namespace holdfast::io {
 namespace {
 
-/// Below this size the outlines of single modules would only darken the picture.
+/// The size of a cube's edge below which outlines of single modules would only darken the picture.
 constexpr double kInnerLinePxMin = 2.5;
 
-/// Below this size so would all outlines but those of the whole.
+/// The size of a cube's edge below which all outlines but those of the whole would darken the
+/// picture.
 constexpr double kOutlinePxMin = 1.5;
 
 struct Widths {
@@ -218,7 +219,7 @@ std::string draw_planned(const Scene& scene) {
 
 namespace {
 
-/// What a module on the ground touches.
+/// Says what a module on the ground touches.
 std::string touch_text(const model::Robot& robot, std::size_t module) {
   std::size_t obstacle_count = 0;
   bool is_on_floor = false;

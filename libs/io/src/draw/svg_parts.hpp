@@ -29,21 +29,21 @@ std::string draw_card(const Scene& scene, std::string_view title);
 
 std::string draw_header(const Scene& scene, std::string_view title);
 
-/// Grid, coordinates and support polygon, below the robot.
+/// Draws the grid, the coordinates and the support polygon, below the robot.
 std::string draw_ground(const Scene& scene);
 
 std::string draw_modules(const Scene& scene);
 
-/// How much lighter planned modules are, in percent.
+/// The percentage by which planned modules are lighter.
 inline constexpr int kGlassLightness = 34;
 
-/// What a module's tooltip says.
+/// The text of a module's tooltip.
 std::string module_tooltip(const Scene& scene, std::size_t module);
 
 /// The modules and obstacles of a scene with bodies.
 std::string draw_bodies(const Scene& scene);
 
-/// How obstacles look that are in the picture.
+/// The look of obstacles that are in the picture.
 struct ObstacleSign {
   std::string label;
   Color color;
@@ -54,7 +54,7 @@ std::vector<ObstacleSign> obstacle_signs(const Scene& scene);
 /// The facets that touch something, by state, where it is more than cubes on a floor.
 std::string draw_facets(const Scene& scene);
 
-/// How facets look that are in the picture.
+/// The look of facets that are in the picture.
 struct FacetSign {
   std::string label;
   std::string attributes;  ///< Of a path.
@@ -81,23 +81,25 @@ inline constexpr const char* kGravityInk = "#4a4f9c";
 /// An arrow with a white border.
 std::string arrow(ScreenPoint from, ScreenPoint to, const std::string& color);
 
-/// What the robot hides of its support polygon, the centre of mass, the edge it topples over.
+/// Draws what the robot hides of its support polygon, the centre of mass, the edge it topples over.
 std::string draw_balance(const Scene& scene);
 
-/// How the robot begins to fall where no polygon says so; null if it does not, or that is not
-/// known.
+/// The motion in which the robot begins to fall where no polygon decides; null if it does not fall,
+/// or that is not known.
 const limit::Motion* fall_of(const Scene& scene);
 
-/// That motion: over which edge or about which axis, and where the centre of mass goes.
+/// Draws how the robot begins to fall: over which edge or about which axis, and where the centre of
+/// mass goes.
 std::string draw_fall(const Scene& scene);
 
-/// What labels should not hide: the centre of mass, its foot, the toppling edge and its arrow.
+/// The points that labels should not hide: the centre of mass, its foot, the toppling edge and its
+/// arrow.
 std::vector<ScreenPoint> balance_signs(const Scene& scene);
 
-/// Broken connections and the worst one.
+/// Draws the broken connections and the worst one.
 std::string draw_marks(const Scene& scene);
 
-/// How much the worst connection carries, or how far the centre of mass lies outside.
+/// Draws how much the worst connection carries, or how far the centre of mass lies outside.
 std::string draw_labels(const Scene& scene);
 
 /// The directions of x, y and z, in a free corner.

@@ -105,7 +105,7 @@ double round_up(double value) {
   return 10 * unit;
 }
 
-/// What is drawn against the steps in one panel.
+/// A curve over the steps in one panel.
 struct Curve {
   double Column::*value;
   std::string title;

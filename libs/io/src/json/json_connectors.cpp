@@ -19,7 +19,7 @@ double positive_or_null(JsonReading& reading, const Json& value, const JsonPlace
   return value.is_null() ? kUnlimited : read_positive(reading, value, place);
 }
 
-/// {"vertical": number, "lateral": number}; one of them may be absent.
+/// Reads {"vertical": number, "lateral": number}; one of them may be absent.
 std::vector<std::optional<double>> by_class(JsonReading& reading, const Json& value,
                                             const JsonPlace& place) {
   std::vector<std::optional<double>> values(kClassKeys.size());

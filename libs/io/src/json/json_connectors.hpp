@@ -24,8 +24,8 @@ KindEntry read_kind(JsonReading& reading, const std::string& name, const Json& v
 /// A failure if an object of the material or a kind says the strength of a direction twice.
 void expect_one_strength(JsonReading& reading, const Json& value, const JsonPlace& place);
 
-/// After all members: a failure if a list has not a value for each pair of the lattice's
-/// directions.
+/// Fails if a list does not have one value for each pair of the lattice's directions; to be called
+/// when all members are read.
 void check_pair_lists(JsonReading& reading);
 
 /// A number that is not negative, such as a coefficient of friction or a width.

@@ -45,7 +45,7 @@ void for_each_element(JsonReading& reading, const Json& value, const JsonPlace& 
   }
 }
 
-/// What read(reading, element, its place) makes of every element of an array.
+/// The list of read(reading, element, its place) for every element of an array.
 template <class Read>
 auto list_of(JsonReading& reading, const Json& value, const JsonPlace& place, const Read& read) {
   std::vector<decltype(read(reading, value, place))> list;
@@ -96,7 +96,8 @@ void read_floor(JsonReading& reading, const Json& value, const JsonPlace& place)
   }
 }
 
-/// Straight down it is what the material says, which version 1 can say too.
+/// Reads gravity; if it points straight down, it becomes that of the material, which version 1 can
+/// say.
 void read_gravity(JsonReading& reading, const Json& value, const JsonPlace& place) {
   const std::array<double, 3> gravity = vector(reading, value, place);
   Document& document = reading.document;
@@ -254,7 +255,7 @@ void read_steps(JsonReading& reading, const Json& value, const JsonPlace& place)
   reading.document.extension.plan = list_of(reading, value, place, plan_step);
 }
 
-/// For what is read before all else.
+/// Skips a member that is read before all others.
 void pass_over(JsonReading& /*reading*/, const Json& /*value*/, const JsonPlace& /*place*/) {}
 
 /// The JSON pointer to a module that has parameters of its own.
@@ -293,7 +294,8 @@ void read_own_parameter(JsonReading& reading, std::string_view key, const Json& 
 
 namespace {
 
-/// In the words of a file for VisibleSim: attributes of blocks, or a pointer into <extension>.
+/// Translates a JSON pointer into the terms of a VisibleSim file: an attribute of a block, or a
+/// pointer into <extension>.
 std::string place_in_xml(const Document& document, const std::string& pointer) {
   for (const OwnParameters& own : document.extension.own) {
     if (pointer == own_place(own) + "/kind") {

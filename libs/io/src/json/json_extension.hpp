@@ -24,8 +24,8 @@ void read_own_parameter(JsonReading& reading, std::string_view key, const Json& 
 /// lattice, what modules have of their own and obstacles are there already.
 void read_extension_text(Reading& reading, std::string_view text, const Reading::Where& where);
 
-/// After all members: sorts what modules have of their own; a failure if one is of a kind that is
-/// none.
+/// Sorts the modules' own parameters, and fails if a module's kind is not defined; to be called
+/// when all members are read.
 void check_kinds(JsonReading& reading);
 
 }  // namespace holdfast::io

@@ -73,7 +73,7 @@ base::Result<ReadDocument> JsonReader::read(const Json& root, const ReadOptions&
   return std::move(reading_).finish();
 }
 
-/// What must be there, and in a version that can be read.
+/// Reads the members that must be there, and refuses versions that cannot be read.
 bool JsonReader::read_heading(const Json::object_t& root, const JsonPlace& place,
                               const ReadOptions& options) {
   static const Json kNone;
@@ -114,7 +114,7 @@ bool JsonReader::read_heading(const Json::object_t& root, const JsonPlace& place
   return !reading_.has_failed();
 }
 
-/// As read_lattice(), and before it.
+/// Reads the robot's name, null if there is none; to be called before read_lattice().
 void JsonReader::read_robot(const Json& value, const JsonPlace& place, const ReadOptions& options) {
   const bool is_named = is_extended_ && !value.is_null();
   const std::string name = is_named ? reading_.string(value, place) : "";
@@ -124,7 +124,7 @@ void JsonReader::read_robot(const Json& value, const JsonPlace& place, const Rea
   reading_.take_robot(name, options, [&] { return place.pointer(); });
 }
 
-/// Before all that depends on it. The value is null if there is none.
+/// Reads the lattice, null if there is none; to be called before all that depends on it.
 void JsonReader::read_lattice(const Json& value, const JsonPlace& place,
                               const ReadOptions& options) {
   const auto where = [&] { return place.pointer(); };
@@ -253,7 +253,7 @@ void JsonReader::read_visiblesim(const Json& value, const JsonPlace& place) {
   }
 }
 
-/// As in VisibleSim XML, from which they come: in any case.
+/// Corrects the case of attribute names, which VisibleSim XML, where they come from, ignores.
 void JsonReader::spell_as_known(Attributes& attributes, Names known, const JsonPlace& place) {
   for (auto& [name, value] : attributes) {
     const auto spelling = known_spelling(name, known);
@@ -268,7 +268,7 @@ void JsonReader::spell_as_known(Attributes& attributes, Names known, const JsonP
   }
 }
 
-/// Before obstacles had a meaning, <obstacleList> was kept as scenery.
+/// Reads <obstacleList> from the scenery, where older versions kept it.
 void JsonReader::take_old_obstacles(std::vector<Element>& list, const JsonPlace& place) {
   const auto found = std::ranges::find(list, kObstacleListElement, &Element::name);
   if (found != list.end() && reading_.document.extension.obstacles.empty()) {
@@ -302,7 +302,7 @@ std::vector<Element> JsonReader::targets(const Json& value, const JsonPlace& pla
   return list;
 }
 
-/// `step` is that of OwnParameters.
+/// Reads a list of modules; `step` is that of OwnParameters.
 template <class Entry>
 std::vector<Entry> JsonReader::entries(const Json& value, const JsonPlace& place,
                                        std::size_t step) {
@@ -318,7 +318,7 @@ std::vector<Entry> JsonReader::entries(const Json& value, const JsonPlace& place
   return list;
 }
 
-/// `own` says which module it is; kept if the entry has parameters of its own.
+/// Reads a module; `own` says which one it is, and is kept if the module has parameters of its own.
 template <class Entry>
 Entry JsonReader::entry(const Json& value, const JsonPlace& place, OwnParameters own) {
   constexpr bool kIsModule = std::is_same_v<Entry, ModuleEntry>;

@@ -28,7 +28,7 @@ std::string json_text(const std::string& value);
 /// The shortest text that reads back as the same number.
 std::string json_text(double value);
 
-/// That of the number, or null.
+/// The text of the number, or "null".
 std::string json_text(const std::optional<double>& value);
 
 std::string json_text(const base::Cell& cell);

@@ -172,7 +172,7 @@ class TreeBuilder {
     return true;
   }
 
-  /// At a key of the innermost open object.
+  /// Records an error at a key of the innermost open object, and returns false.
   bool fail(const std::string& key, std::string message) {
     std::string pointer = "/" + pointer_token(key);
     for (std::size_t i = open_.size() - 1; i > 0; --i) {

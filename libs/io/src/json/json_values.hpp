@@ -53,11 +53,11 @@ class JsonReading : public Reading {
   base::Cell cell(const Json& value, const JsonPlace& place);
   Color color(const Json& value, const JsonPlace& place);
 
-  /// `is_reserved` tells names that have a place of their own.
+  /// Reads attributes; `is_reserved` tells names that have a place of their own.
   Attributes attributes(const Json& value, const JsonPlace& place,
                         bool (*is_reserved)(std::string_view name));
 
-  /// `depth` counts from 1.
+  /// Reads an element; `depth` counts from 1.
   Element element(const Json& value, const JsonPlace& place, int depth);
   std::vector<Element> element_list(const Json& value, const JsonPlace& place, int depth);
 

@@ -97,7 +97,8 @@ std::string element_list(const std::vector<Element>& elements, std::size_t inden
   return array(items, indent);
 }
 
-/// What differs from the defaults. Gravity stands here or as a vector at the top, not in both.
+/// The members of the material that differ from the defaults. Gravity stands here or as a vector at
+/// the top, not in both.
 Items material_members(const Document& document) {
   const model::Material& material = document.material;
   const model::Material defaults = default_material(document);
@@ -148,7 +149,7 @@ Items visiblesim_members(const Document& document) {
   return members;
 }
 
-/// What the modules of a step have of their own; step as in OwnParameters.
+/// The parameters that modules of a step have of their own; `step` is that of OwnParameters.
 std::span<const OwnParameters> own_of(const Extension& extension, std::size_t step) {
   const auto first = std::ranges::lower_bound(extension.own, step, {}, &OwnParameters::step);
   const auto last = std::ranges::upper_bound(extension.own, step, {}, &OwnParameters::step);
@@ -158,7 +159,7 @@ std::span<const OwnParameters> own_of(const Extension& extension, std::size_t st
                static_cast<std::size_t>(last - first));
 }
 
-/// "planned" and "later_steps".
+/// Writes "planned" and "later_steps".
 void add_steps(Items& members, const Document& document) {
   const std::vector<Step>& steps = document.steps;
   if (!steps.empty() && !steps.front().empty()) {

@@ -18,7 +18,7 @@ constexpr const char* kFormat = "holdfast-order-certificate";
 
 using plan::ElementSet;
 
-/// Character i is 1 if module i is there.
+/// Writes a state, in which character i is 1 if module i is there.
 std::string state_text(const ElementSet& state, std::size_t module_count) {
   std::string text(module_count, '0');
   for (const plan::Element element : state.elements()) {

@@ -16,13 +16,13 @@
 #include "text_input.hpp"
 #include "vocabulary.hpp"
 
-/// From what a file says to what a robot is made from.
+/// Translates what a file says into what a robot is made of.
 namespace holdfast::io {
 namespace {
 
 using model::ConnectorLaw;
 
-/// Where a parameter goes; friction, which may be none, aside.
+/// The member of a law that a parameter sets; friction, which may be none, is not among them.
 struct LawMember {
   std::string_view key;
   double ConnectorLaw::*value;
@@ -50,7 +50,7 @@ void set(ConnectorLaw& law, std::string_view key, double value, base::ConnectorC
   }
 }
 
-/// What a parameter says for a direction; none if nothing.
+/// The value of a parameter for a direction; none if it has none.
 std::optional<double> value_for(const ConnectorParameter& parameter, std::size_t direction,
                                 base::ConnectorClass direction_class) {
   const std::size_t index = parameter.spread == Spread::kAll ? 0
@@ -86,7 +86,7 @@ std::optional<base::Error> find_fault(const Connectors& connectors, const JsonPl
   return std::nullopt;
 }
 
-/// What a beam as wide as the pitch has, which a file that names a robot need not say.
+/// The section of a beam as wide as the pitch, which a file that names a robot need not say.
 model::Material section_of_pitch(double pitch_mm) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   model::Material section;
@@ -110,7 +110,8 @@ std::optional<base::Error> find_fault(const model::Material& material, const Jso
   return std::nullopt;
 }
 
-/// Before the robot is made, which does not know the file's names and places.
+/// Finds faults before the robot is made, because the robot does not know the file's names and
+/// places.
 std::optional<base::Error> find_fault(const Document& document) {
   const Extension& extension = document.extension;
   const JsonPlace top;
@@ -147,8 +148,8 @@ std::vector<model::ModuleKind> kinds_of(const Document& document) {
   return kinds;
 }
 
-/// What modules have of their own, for those of one step of the document, or of step 0, which
-/// exist.
+/// The parameters that modules of one step of the document have of their own; step 0 is the
+/// existing modules.
 struct OwnLists {
   std::vector<model::OwnKind>& kinds;
   std::vector<model::OwnMass>& masses;
@@ -195,7 +196,7 @@ std::optional<base::Error> add_own(const Document& document,
   return std::nullopt;
 }
 
-/// Existing modules and all around them, without what single modules have of their own.
+/// The existing modules and all around them, without parameters of single modules.
 model::RobotSpec start_of(const Document& document) {
   const Extension& extension = document.extension;
   model::RobotSpec spec{.material = document.material,

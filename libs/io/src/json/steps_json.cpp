@@ -7,7 +7,7 @@
 namespace holdfast::io {
 namespace {
 
-/// Written to the stream whenever so much has come together.
+/// The size at which text is written to the stream.
 constexpr std::size_t kBlockBytes = std::size_t{1} << 16U;
 
 void write_pair(JsonStream& json, const model::CellPair& pair) {

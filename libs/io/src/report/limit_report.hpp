@@ -6,7 +6,7 @@
 
 #include "holdfast/io/report.hpp"
 
-/// What reports say of the limit load.
+/// Reports the limit load.
 namespace holdfast::io {
 
 /// Adds the keys limit_load_factor and limit_load.

@@ -40,7 +40,7 @@ std::string certificate_text(const plan::MovePlan& plan) {
       '}', 2);
 }
 
-/// How many stages of a plan are judged, and how many of them are safe.
+/// The number of stages of a plan that are judged, and of those that are safe.
 struct StageCount {
   std::size_t all = 0;
   std::size_t safe = 0;

@@ -75,7 +75,7 @@ std::string help_words(const OrderReport& report) {
                      words(is_support ? report.help->supports : report.help->temporary));
 }
 
-/// How far the search got.
+/// Says how far the search got.
 std::string furthest_words(const OrderReport& report) {
   const plan::Order& order = report.result.order;
   if (order.steps.empty()) {

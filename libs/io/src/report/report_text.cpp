@@ -16,7 +16,7 @@
 namespace holdfast::io {
 namespace {
 
-/// As many of the most loaded connections are listed.
+/// The number of most loaded connections that are listed.
 constexpr std::size_t kListedCount = 5;
 
 using Out = std::back_insert_iterator<std::string>;
@@ -27,7 +27,7 @@ void write_modules(Out out, const model::Robot& robot) {
                  robot.ground_count(), robot.fixed_count());
 }
 
-/// What the rigid body says with supports anywhere.
+/// Says how the rigid body stands with supports anywhere.
 std::string rigid_text(const limit::RigidStability& rigid) {
   std::string text = fmt::format(": as a rigid body it {}", limit::name(rigid.answer));
   if (rigid.motion) {
@@ -118,7 +118,7 @@ void write_solver(Out out, const verdict::Assessment& assessment, double seconds
                  time);
 }
 
-/// Rounded outwards to about twelve digits.
+/// Writes the proved range, rounded outwards to about twelve digits.
 void write_proof(Out out, const ReportEntry& entry) {
   constexpr double kOutwards = 1e-12;
   const certificate::Verification& found = entry.proof->verification;

@@ -16,10 +16,11 @@ namespace {
 using plan::StageJudgement;
 using verdict::Verdict;
 
-/// Up to so many steps each has its line.
+/// The number of steps up to which each has its line.
 constexpr std::size_t kListedMax = 40;
 
-/// Of more, so many that are not safe.
+/// The number of steps that are not safe and have a line where there are more than kListedMax
+/// steps.
 constexpr std::size_t kUnsafeListedMax = 10;
 
 const StageJudgement& stage_of(const plan::StepJudgement& step, plan::Stage stage) {
@@ -30,7 +31,7 @@ bool is_safe(const plan::StepJudgement& step) {
   return std::ranges::all_of(step.stages, &plan::Judgement::is_safe);
 }
 
-/// "0.8376 +12.00", "-" where there is none.
+/// Writes "0.8376 +12.00", and "-" where there is none.
 std::string numbers_text(const StageJudgement& stage) {
   const std::string ratio = stage.load_ratio_max ? beside_one(*stage.load_ratio_max, 4) : "-";
   const std::string margin =
@@ -66,7 +67,7 @@ std::set<std::size_t> listed_steps(const plan::SequenceJudgement& judged) {
   return listed;
 }
 
-/// Where a stage is at its worst, if that is on the way.
+/// Says where a stage is at its worst, if that is on the way.
 std::string waypoint_text(const StageJudgement& stage) {
   return stage.waypoint_count == 0
              ? std::string()

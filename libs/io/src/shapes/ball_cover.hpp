@@ -11,9 +11,10 @@
 
 namespace holdfast::io {
 
-/// Which balls of a lattice nobody can see: those whose whole disc other balls nearer to the eye
-/// cover. The disc is cut into squares; one counts as covered if all of it lies behind one ball. So
-/// a ball that is called hidden is hidden; one of which next to nothing is seen may not be found.
+/// Finds balls of a lattice that nobody can see, because other balls nearer to the eye cover their
+/// whole disc. The disc is cut into squares; a square counts as covered if all of it lies behind
+/// one ball. So a ball that is called hidden is hidden, but one that is almost hidden may not be
+/// found.
 class BallCover {
  public:
   explicit BallCover(const base::Lattice& lattice);

@@ -17,7 +17,8 @@ namespace {
 
 constexpr int kDiscCorners = 24;
 
-/// Faces whose normals are this little turned towards the eye are seen edge-on.
+/// The cosine up to which a face's normal is turned so little towards the eye that it is seen
+/// edge-on.
 constexpr double kEdgeOn = 1e-9;
 
 std::vector<SeenFace> seen(const std::vector<ShapeFace>& faces) {
@@ -32,7 +33,7 @@ std::vector<SeenFace> seen(const std::vector<ShapeFace>& faces) {
   return all;
 }
 
-/// Corner `i` of the circle around a disc's face that is at y.
+/// The corner `i` of the circle around a disc's face that is at y.
 Place disc_corner(int i, double y) {
   const double angle = 2 * std::numbers::pi * i / kDiscCorners;
   return {0.5 * std::cos(angle), y, 0.5 * std::sin(angle)};
@@ -149,8 +150,9 @@ BodyView::BodyView(const model::Robot& robot, NearObstacles obstacles)
   });
 }
 
-/// Of a module that fills its cell: nothing is seen of a face between two existing modules, nor of
-/// one between two planned ones, and of one between either kind the existing module's is drawn.
+/// Finds the hidden faces of a module that fills its cell. A face between two existing modules, or
+/// between two planned ones, is not drawn; where one of each kind meet, the existing module's face
+/// is.
 std::uint16_t BodyView::faces_hidden_by_neighbours(std::size_t module) const {
   std::uint16_t hidden = 0;
   for (std::size_t face = 0; face < module_faces_.size(); ++face) {

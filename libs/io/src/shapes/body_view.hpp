@@ -22,11 +22,11 @@ struct SeenFace {
   std::optional<base::Direction> direction;
 };
 
-/// What the eye sees of a body that has no neighbours; nothing of a ball, which is a circle of
+/// The faces that the eye sees of a body without neighbours; none of a ball, which is a circle of
 /// kBallRadius.
 std::vector<SeenFace> seen_faces(const base::Lattice& lattice);
 
-/// The same of the cell of an obstacle.
+/// The visible faces of an obstacle's cell without neighbours.
 std::vector<SeenFace> seen_cell_faces(const base::Lattice& lattice);
 
 /// Obstacles are glass. Those that hide nothing of the robot, and those of which it hides nothing,
@@ -49,17 +49,18 @@ class BodyView {
 
   const NearObstacles& obstacles() const { return obstacles_; }
 
-  /// Back to front: obstacles behind, then what is among the modules, then obstacles in front.
+  /// All items from back to front: obstacles behind, then what is among the modules, then obstacles
+  /// in front.
   std::span<const BodyItem> items() const { return items_; }
 
   base::Cell cell_of(const BodyItem& item) const;
 
-  /// Where the node of an item is, in pitches.
+  /// The place of an item's node, in pitches.
   Place place_of(const BodyItem& item) const;
 
   Body body() const { return body_; }
 
-  /// Of a module, and of an obstacle cell, without neighbours.
+  /// The visible faces of a module without neighbours.
   std::span<const SeenFace> module_faces() const { return module_faces_; }
 
   std::span<const SeenFace> obstacle_faces() const { return obstacle_faces_; }

@@ -15,15 +15,15 @@ inline constexpr double kCos30 = 0.8660254037844386;
 /// The radius of a ball of one pitch: sqrt(3/2) / 2.
 inline constexpr double kBallRadius = 0.6123724356957945;
 
-/// Towards the eye; not of length one.
+/// The direction towards the eye; its length is not one.
 inline constexpr Place kEye = {1, -1, 1};
 
-/// Where a point is seen; the origin is at (0, 0).
+/// The point of the picture where a place is seen; the origin is at (0, 0).
 constexpr ScreenPoint seen_at(const Place& place) {
   return {(place[0] + place[1]) * kCos30, (place[0] - place[1]) / 2 - place[2]};
 }
 
-/// Larger is nearer to the eye.
+/// How near a place is to the eye; larger is nearer.
 constexpr double nearness(const Place& place) { return dot(place, kEye); }
 
 }  // namespace holdfast::io

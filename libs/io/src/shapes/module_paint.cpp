@@ -18,8 +18,8 @@ struct Stop {
   Color color;
 };
 
-/// Green, yellow, orange. Broken is a darker red, so that it stands apart from orange in print and
-/// for eyes that see red and green alike.
+/// The colours of loads: green, yellow, orange. Broken is a darker red, so that it stands apart
+/// from orange in print and for eyes that see red and green alike.
 constexpr Stop kStops[] = {{0, {.red = 62, .green = 166, .blue = 88}},
                            {50, {.red = 242, .green = 218, .blue = 78}},
                            {100, {.red = 240, .green = 138, .blue = 36}}};

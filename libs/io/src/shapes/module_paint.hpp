@@ -11,7 +11,7 @@
 #include "shapes/module_shape.hpp"
 #include "shapes/visible_surface.hpp"
 
-/// What colour a module has, and what it says: as in Fig. 6 of [Piranda 2021].
+/// Gives each module a colour, and what it says: as in Fig. 6 of [Piranda 2021].
 namespace holdfast::io {
 
 enum class Meaning : std::uint8_t {
@@ -32,24 +32,25 @@ struct ModulePaint {
 /// Whether the assessment says what every connection carries.
 bool has_loads(const model::Robot& robot, const verdict::Assessment& assessment);
 
-/// Per module.
+/// The paint of each module.
 std::vector<ModulePaint> paint_modules(const model::Robot& robot,
                                        const verdict::Assessment& assessment);
 
-/// In integers, so that it is the same everywhere.
+/// The colour of a load, computed in integers, so that it is the same on every machine.
 Color load_color(int percent);
 Color color_of(const ModulePaint& paint);
 
-/// Mixed with white, by so many percent.
+/// Mixes a colour with so many percent of white.
 Color lightened(Color color, int percent);
 
 /// A face by its direction: light falls from above and from the left.
 Color shaded(Color color, Side side);
 
-/// The same of a face with any normal; those of a cube look as by their side.
+/// Shades a face by its normal, which may point anywhere; a cube's face looks as it does by its
+/// side.
 Color shaded(Color color, const Place& normal);
 
-/// "#rrggbb".
+/// Writes "#rrggbb".
 std::string hex(Color color);
 
 inline constexpr Color kBrokenColor = {.red = 214, .green = 32, .blue = 43};

@@ -44,7 +44,7 @@ std::vector<HalfSpace> half_spaces(const base::Lattice& lattice, double layer_de
   return spaces;
 }
 
-/// Where three planes meet, by Cramer's rule; none if two are parallel, or nearly.
+/// The point where three planes meet, by Cramer's rule; none if two are parallel, or nearly.
 std::optional<Place> meeting_point(const HalfSpace& a, const HalfSpace& b, const HalfSpace& c) {
   const double determinant = dot(a.normal, cross(b.normal, c.normal));
   if (std::abs(determinant) < kTie) {

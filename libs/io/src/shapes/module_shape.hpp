@@ -9,13 +9,13 @@
 
 #include "holdfast/base/lattice.hpp"
 
-/// What modules look like in pictures, by lattice. Unit: one pitch; origin: the module's node;
+/// Shapes the modules of pictures, by lattice. Unit: one pitch; origin: the module's node;
 /// global axes.
 ///
 /// The cell of a lattice is what is nearer to its node than to any other, {p : p . n <= 1/2 for the
 /// unit vectors n to all neighbours}: cube, hexagonal prism, rhombic dodecahedron. Every body lies
-/// inside its cell. So of two bodies the plane halfway between their nodes keeps one on either
-/// side, and the one whose node is nearer to the eye is nowhere behind the other.
+/// inside its cell. So the plane halfway between two nodes keeps one body on either side, and the
+/// one whose node is nearer to the eye is nowhere behind the other.
 namespace holdfast::io {
 
 /// A point or a vector in pitches.
@@ -41,7 +41,7 @@ constexpr Place cross(const Place& a, const Place& b) {
 struct ShapeFace {
   Place normal{};              ///< Outwards, of length one.
   std::vector<Place> corners;  ///< Counter-clockwise, seen from outside.
-  /// Where the neighbour is that shares the face; none: there is no such direction.
+  /// The direction of the neighbour that shares the face; none if there is no such direction.
   std::optional<base::Direction> direction;
 };
 
@@ -57,7 +57,7 @@ enum class Body : std::uint8_t {
 
 inline constexpr double kDiscDepth = 0.5;
 
-/// What the modules of a lattice are; of one without an entry in the table, that they fill cells.
+/// The body of a lattice's modules; modules of a lattice without an entry in the table fill cells.
 Body body_of(const base::Lattice& lattice);
 
 }  // namespace holdfast::io

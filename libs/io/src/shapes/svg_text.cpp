@@ -38,7 +38,7 @@ bool is_xml_character(std::uint32_t code) {
          code <= 0x10ffff;
 }
 
-/// How many bytes a UTF-8 sequence with this first byte has, 0 if none begins with it.
+/// The number of bytes of a UTF-8 sequence with this first byte, 0 if none begins with it.
 std::size_t sequence_length(unsigned char first) {
   if (first < 0x80) {
     return 1;
@@ -79,7 +79,8 @@ Character first_character(std::string_view text) {
   return is_good ? Character{.code = code, .size = size} : Character{};
 }
 
-/// In units of the font size, measured on DejaVu Sans, one of the widest of its kind.
+/// The width of a character in units of the font size, measured on DejaVu Sans, which is among the
+/// widest sans-serif faces.
 double character_width(std::uint32_t code) {
   const auto is_one_of = [&](std::string_view characters) {
     return code < 0x80 && characters.find(static_cast<char>(code)) != std::string_view::npos;

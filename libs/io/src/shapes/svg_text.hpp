@@ -11,7 +11,7 @@
 /// of a pixel, and from there on are integers: the same text with every compiler.
 namespace holdfast::io {
 
-/// On the picture, in pixels; y points down.
+/// A point of the picture, in pixels; y points down.
 struct ScreenPoint {
   double x = 0;
   double y = 0;
@@ -31,7 +31,8 @@ struct ScreenPoint {
 
 double length(ScreenPoint vector);
 
-/// At most two decimals, no trailing zeros, no minus before a zero.
+/// Writes a number with at most two decimals, without trailing zeros, and zero without a minus
+/// sign.
 std::string number(double value);
 
 /// A load ratio for people: two decimals, more where rounding would call a safe ratio 1.00.
@@ -62,10 +63,10 @@ class Path {
 /// One path in as many elements as it takes: readers refuse what is longer than 10 million bytes.
 class PathElements {
  public:
-  /// `attributes` are those of every element, besides the data.
+  /// The elements have these attributes besides the data.
   explicit PathElements(std::string attributes) : attributes_(std::move(attributes)) {}
 
-  /// Where the next piece goes, which begins with move_to. For that piece only.
+  /// The path of the next piece, which begins with move_to. It is for that piece only.
   Path& next();
 
   /// The elements, none if there was no piece. Called once.
@@ -79,7 +80,8 @@ class PathElements {
   std::string elements_;
 };
 
-/// For use in text and attributes; what is no UTF-8 or not allowed in XML becomes U+FFFD.
+/// Escapes text for elements and attributes; bytes that are not UTF-8, and characters that XML does
+/// not allow, become U+FFFD.
 std::string escape(std::string_view text);
 
 /// A guess for a common sans-serif face, rather too wide than too narrow.

@@ -9,7 +9,7 @@
 
 #include "holdfast/model/robot.hpp"
 
-/// What of a robot can be seen in isometric view, exactly and without a drop of painter's paint.
+/// Finds what of a robot can be seen in isometric view, exactly and without painting over anything.
 ///
 /// Seen along (-1, 1, -1), the corners of all cubes fall on the points of one triangular lattice,
 ///   u = x + y (to the right),   v = x - y - 2 z (down),   x, y, z in cells from the lowest corner,
@@ -53,20 +53,21 @@ struct VisibleEdge {
   Vertex to;
   bool is_outline = false;  ///< Behind it lies something further away, or nothing.
   bool is_planned = false;  ///< Of a planned module.
-  /// On which side the robot goes on further away: 1 right of or below the edge, -1 left of or
-  /// above it, 0 nowhere.
+  /// The side on which the robot continues further away: 1 right of or below the edge, -1 left of
+  /// or above it, 0 neither.
   std::int8_t far_side = 0;
 };
 
-/// Whose faces are looked for. Planned modules are drawn as glass, so there are two pictures.
+/// The modules whose faces are looked for. Planned modules are drawn as glass, so there are two
+/// pictures.
 enum class Cast : std::uint8_t { kExisting, kAll };
 
 class VisibleSurface {
  public:
-  /// O(n log n) for n modules. Keeps a reference to the robot.
+  /// Keeps a reference to the robot; O(n log n) for n modules.
   VisibleSurface(const model::Robot& robot, Cast cast);
 
-  /// Sorted by u and middle, each triangle once.
+  /// The visible triangles, sorted by u and middle, each once.
   std::span<const Triangle> triangles() const { return triangles_; }
 
   /// Whether something is drawn over this point of the picture.
@@ -75,8 +76,8 @@ class VisibleSurface {
   /// The visible faces, by module, then by side.
   std::vector<VisibleFace> faces() const;
 
-  /// Each once; those of existing modules are joined into long lines, those of planned modules are
-  /// single cube edges, so that dashes meet in the corners.
+  /// The visible edges, each once; those of existing modules are joined into long lines, those of
+  /// planned modules are single cube edges, so that dashes meet in the corners.
   std::vector<VisibleEdge> edges() const;
 
  private:

@@ -17,10 +17,10 @@ namespace {
 
 using Lengths = std::array<double, 3>;
 
-/// VisibleSim's lattice of Blinky Blocks.
+/// The block size of VisibleSim's lattice of Blinky Blocks.
 constexpr Lengths kBlockSize = {40, 40, 41};
 
-/// VisibleSim's words for no, in any case.
+/// Whether a text is one of VisibleSim's words for no, in any case.
 bool is_no(std::string_view text) {
   std::string lower(trimmed(text));
   std::ranges::transform(lower, lower.begin(), [](char c) {
@@ -29,12 +29,13 @@ bool is_no(std::string_view text) {
   return is_one_of(lower, {"0", "false", "no"});
 }
 
-/// Most modules have nothing else, and looking for what is not there takes time.
+/// Whether an element has more attributes than its position: most have none, and a search for
+/// attributes that are not there takes time.
 bool has_more_than_position(const pugi::xml_node& node) {
   return node.first_attribute().next_attribute();
 }
 
-/// What the attributes of ours say that a module has of its own, if there are any.
+/// Reads the attributes of ours for what a module has of its own, if there are any.
 void read_own(XmlReading& reading, const pugi::xml_node& node, OwnParameters own) {
   if (!has_more_than_position(node)) {
     return;
@@ -82,8 +83,8 @@ Attributes read_orientation(const pugi::xml_node& node) {
   return attribute ? Attributes{{kOrientation, attribute.value()}} : Attributes();
 }
 
-/// <blocksLine> or <targetLine>: a row along x, one character per cell. A row without a plane lies
-/// in that of the row before.
+/// Reads <blocksLine> or <targetLine>: a row along x, one character per cell. A row without a plane
+/// lies in that of the row before.
 template <class Entry>
 void read_row(XmlReading& reading, const pugi::xml_node& row, std::int32_t& plane,
               std::vector<Entry>& entries) {
@@ -171,7 +172,7 @@ struct BoxRanges {
   std::size_t count() const { return axes[0].count() * axes[1].count() * axes[2].count(); }
 };
 
-/// What <blockBox> says, in mm or in cells.
+/// The text of <blockBox>, in mm or in cells.
 struct BoxText {
   Lengths origin;
   Lengths size;  ///< Infinite where the box reaches the end of the grid.
@@ -204,7 +205,7 @@ bool is_within(const BoxText& box, const std::array<std::int32_t, 3>& grid) {
   return is;
 }
 
-/// Outside <vs>: in mm, unless cells may be meant as well and make other modules.
+/// Reads a box outside <vs> in mm, unless cells may be meant as well and make other modules.
 BoxRanges read_mm_ranges(XmlReading& reading, const pugi::xml_node& box, const BoxText& text,
                          const std::array<std::int32_t, 3>& grid) {
   const Lengths pitch = read_lengths(reading, box.parent(), "blockSize", kBlockSize);
@@ -231,7 +232,7 @@ BoxRanges read_mm_ranges(XmlReading& reading, const pugi::xml_node& box, const B
   return ranges;
 }
 
-/// Within <vs>. The loops of VisibleSim end before the last layer of the grid.
+/// Reads a box within <vs>. The loops of VisibleSim end before the last layer of the grid.
 BoxRanges read_cell_ranges(XmlReading& reading, const pugi::xml_node& box, const BoxText& text,
                            const std::array<std::int32_t, 3>& grid) {
   const BoxRanges ranges = ranges_in_cells(text, grid);

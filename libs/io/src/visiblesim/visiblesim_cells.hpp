@@ -9,10 +9,11 @@
 /// The many ways in which VisibleSim's XML says where modules are.
 namespace holdfast::io {
 
-/// <block>, <blocksLine> and <blockBox> of <blockList>, into document.modules. After read_grid.
+/// Reads <block>, <blocksLine> and <blockBox> of <blockList> into document.modules; to be called
+/// after read_grid().
 void read_block_list(XmlReading& reading, const pugi::xml_node& list);
 
-/// <cell> and <targetLine> of <target format="grid">.
+/// Reads <cell> and <targetLine> of <target format="grid">.
 Step read_grid_target(XmlReading& reading, const pugi::xml_node& target);
 
 }  // namespace holdfast::io

@@ -58,8 +58,8 @@ void read_known_answer(XmlReading& reading, const pugi::xml_node& node) {
   reading.take_known_answer(std::move(answer), [&] { return reading.line(node); });
 }
 
-/// What only version 2 of holdfast JSON says, but for what VisibleSim or <holdfast> has words for.
-/// The element may be missing.
+/// Reads what only version 2 of holdfast JSON says, but for what VisibleSim or <holdfast> has words
+/// for. The element may be missing.
 void read_extension(XmlReading& reading, const pugi::xml_node& node) {
   std::string text = node ? "" : "{}";
   for (const pugi::xml_node& child : node.children()) {
@@ -68,7 +68,7 @@ void read_extension(XmlReading& reading, const pugi::xml_node& node) {
   read_extension_text(reading, text, [&] { return node ? reading.line(node) : std::string(); });
 }
 
-/// <holdfast>: what our writer adds to the file.
+/// Reads <holdfast>, which our writer adds to the file.
 void read_own_element(XmlReading& reading, const pugi::xml_node& node) {
   Document& document = reading.document;
   reading.expect_attributes(node, own_element_names());
@@ -132,8 +132,8 @@ void read_scenery(XmlReading& reading, const pugi::xml_node& world) {
   }
 }
 
-/// What the file says, then what it is asked for, then the robot's, then what only blocks of one
-/// kind of modules are as large as.
+/// Finds the lattice: the file's, or the one that is asked for, or the robot's, or the one whose
+/// modules alone have blocks of this size.
 void read_lattice(XmlReading& reading, const pugi::xml_node& blocks, const pugi::xml_node& own,
                   const ReadOptions& options) {
   const auto where = [&] { return reading.line(own ? own : blocks); };
@@ -192,7 +192,7 @@ void read_world(XmlReading& reading, const pugi::xml_node& world, const ReadOpti
   }
 }
 
-/// What stands beside the root would go unread.
+/// Refuses content beside the root, which would go unread.
 void expect_nothing_beside(XmlReading& reading, const pugi::xml_node& tree) {
   for (const pugi::xml_node& child : tree.children()) {
     if (is_one_of(child.name(), {"parameters", "world"})) {

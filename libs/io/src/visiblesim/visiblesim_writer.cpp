@@ -16,7 +16,7 @@
 namespace holdfast::io {
 namespace {
 
-/// pugixml tells with an empty handle, not with an exception, that there is no memory left.
+/// Appends an element, or throws if there is no memory, which pugixml reports by an empty handle.
 pugi::xml_node append(pugi::xml_node parent, const char* name) {
   const pugi::xml_node node = parent.append_child(name);
   if (!node) {
@@ -167,7 +167,7 @@ void for_each_shown(const model::Obstacle& obstacle, const Use& use) {
   }
 }
 
-/// What makes an <obstacle> begin a further obstacle.
+/// Adds what makes an <obstacle> begin a further obstacle.
 void add_touch(pugi::xml_node& node, const model::Obstacle& obstacle, const base::Cell& shift) {
   add(node, "hold", std::string(kHoldNames[static_cast<std::size_t>(obstacle.touch.hold)]));
   if (obstacle.touch.friction) {
@@ -201,7 +201,7 @@ void add_obstacles(pugi::xml_node world, const Document& document, const base::C
   }
 }
 
-/// At least one target, as users of VisibleSim write it even where nothing is planned.
+/// Writes the targets; one empty target where nothing is planned, as users of VisibleSim write it.
 void add_targets(pugi::xml_node world, const Document& document, const base::Cell& shift,
                  OwnAttributes& own) {
   pugi::xml_node list = append(world, "targetList");
@@ -225,7 +225,7 @@ void add_targets(pugi::xml_node world, const Document& document, const base::Cel
   }
 }
 
-/// What VisibleSim has no word for, and ignores here.
+/// Adds the element for what VisibleSim has no word for, and ignores here.
 void add_own_element(pugi::xml_node world, const Document& document, const base::Cell& shift,
                      bool is_grid_computed) {
   pugi::xml_node node = append(world, kOwnElement);

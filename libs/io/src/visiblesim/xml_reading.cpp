@@ -40,8 +40,9 @@ bool is_read(std::string_view entity) {
                                   : std::ranges::find(kNamed, entity) != std::end(kNamed);
 }
 
-/// Depth and number of elements, and entities in attributes, in one pass before the parser takes
-/// memory for them. Goes from '<' to '<'; whether the text is well-formed is left to the parser.
+/// Counts the depth and number of elements, and entities in attributes, in one pass before the
+/// parser takes memory for them. Goes from '<' to '<'; whether the text is well-formed is left to
+/// the parser.
 class ShapeCheck {
  public:
   explicit ShapeCheck(std::string_view text) : text_(text) {}
@@ -69,7 +70,7 @@ class ShapeCheck {
   }
 
  private:
-  /// From a '<' to the end of what it begins.
+  /// Moves i from a '<' to the end of what it begins.
   void step(std::size_t& i) {
     const std::string_view rest = text_.substr(i);
     if (rest.starts_with("<!--")) {
@@ -94,7 +95,7 @@ class ShapeCheck {
     i = std::min(text_.find(end, i + length), text_.size());
   }
 
-  /// To the '>' that ends a tag; those in attribute values do not.
+  /// Moves i to the '>' that ends a tag, past those in attribute values.
   void skip_tag(std::size_t& i) {
     char quote = '\0';
     for (++i; i < text_.size(); ++i) {

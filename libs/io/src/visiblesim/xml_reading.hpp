@@ -37,26 +37,27 @@ class XmlReading : public Reading {
   void expect_no_content(const pugi::xml_node& node);
   void warn_of_unknown_child(const pugi::xml_node& child, Names known);
 
-  /// Those attributes that `is_read` leaves.
+  /// The attributes for which `is_read` is false.
   Attributes attributes(const pugi::xml_node& node, bool (*is_read)(std::string_view name));
 
-  /// nullptr, and a failure, if there is none.
+  /// The value of an attribute; nullptr, and a failure, if there is none.
   const char* required(const pugi::xml_node& node, const char* name);
 
   // Of an attribute that is there.
   double number(const pugi::xml_node& node, const pugi::xml_attribute& attribute);
 
-  /// It may be written as "2.0".
+  /// Reads an integer, which may be written as "2.0".
   std::int32_t integer(const pugi::xml_node& node, const pugi::xml_attribute& attribute,
                        IntegerRange range);
 
-  /// Attribute "position".
+  /// Reads the attribute "position".
   base::Cell cell(const pugi::xml_node& node);
 
-  /// Attribute "color", if there is one.
+  /// Reads the attribute "color", if there is one.
   std::optional<Color> color(const pugi::xml_node& node);
 
-  /// What our writer has added to every cell, lest any be negative, by the attribute of <holdfast>.
+  /// Takes back what our writer has added to every cell, lest any be negative, by the attribute of
+  /// <holdfast>.
   void take_back_shift(const pugi::xml_node& own);
 
   /// An element with everything in it. `depth` counts from 1.

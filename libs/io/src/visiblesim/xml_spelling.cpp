@@ -14,14 +14,14 @@
 namespace holdfast::io {
 namespace {
 
-/// What may stand in an element that is read.
+/// The content that may stand in an element that is read.
 struct Content {
   std::string_view element;
   Names attributes;
   Names children;
 };
 
-/// Of the document first, whose name is empty.
+/// The elements that are read; the first, whose name is empty, is the document.
 const std::vector<Content>& contents() {
   static const std::vector<Content> list = {{"", {}, kRootElements},
                                             {kRootElement, {}, kRootElements},

@@ -18,7 +18,7 @@
 /// compressed size of each. The page has no compression: there an array is its size and its bytes.
 namespace holdfast::io {
 
-/// What one array holds. Values are little-endian on every machine that we build for.
+/// The content of one array. Values are little-endian on every machine that we build for.
 struct VtuArray {
   const char* type = "Float64";
   const char* name = "";
@@ -43,7 +43,7 @@ class VtuArrays {
   /// The attribute of <VTKFile> that says how arrays are compressed; empty if they are not.
   static std::string_view compressor();
 
-  /// From now on announce() only says what an array is, in the element <PDataArray>.
+  /// Makes announce() describe arrays only, in the element <PDataArray>.
   void list_only() { is_list_ = true; }
 
   /// Writes the element <DataArray>.

@@ -41,11 +41,11 @@ constexpr std::size_t kFacetCornerCount = 4;
 constexpr std::array<std::array<double, 2>, kFacetCornerCount> kFacetCorners = {
     {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
 
-/// What a cell of the file stands for.
+/// The thing that a cell of the file stands for.
 enum class CellKind : std::uint8_t { kModule, kConnection, kFacet, kObstacle };
 
-/// What is not finite is written as 0, and what is is rounded to 32 bits, more than nine digits:
-/// fewer bits take less room and time.
+/// The value that is written: 0 for what is not finite, else rounded to 32 bits, more than nine
+/// digits, as fewer bits take less room and time.
 double written(double value) {
   constexpr std::uint64_t kDropped = 21;
   // Adding zero takes the sign from minus zero.
@@ -63,7 +63,7 @@ Value written(const Value& value) {
   return value;
 }
 
-/// VTK's word for a type.
+/// VTK's name of a type.
 template <class Number>
 constexpr const char* kTypeName = nullptr;
 template <>
@@ -101,7 +101,7 @@ Triple first_half(const base::Vec6<double>& vector) { return {vector[0], vector[
 
 Triple second_half(const base::Vec6<double>& vector) { return {vector[3], vector[4], vector[5]}; }
 
-/// How many corners of a facet press: 0 (open), 1, 2 (an edge) or 4 (closed).
+/// The number of pressing corners of a facet: 0 (open), 1, 2 (an edge) or 4 (closed).
 std::int8_t pressing_corners(const mechanics::ContactState& state) {
   if (!state.pressed) {
     return 0;
@@ -241,8 +241,8 @@ class Writer {
                         always(decltype(of_module(std::size_t{})){}));
   }
 
-  /// `of_point` gets a module and a point of it, from its node, mm; `of_obstacle` a cell and the
-  /// same.
+  /// Announces an array by point: `of_point` gets a module and a point of it, from its node, mm;
+  /// `of_obstacle` a cell and the same.
   template <class OfPoint, class OfObstacle>
   void announce_point_array(const char* name, OfPoint of_point, OfObstacle of_obstacle) {
     const double pitch = robot_.material().pitch_mm;
@@ -482,7 +482,7 @@ class Writer {
     return is_known ? pressing_corners(states[facet]) : kNotOnGround;
   }
 
-  /// Of a module's facets the one that presses with most corners.
+  /// The largest number of pressing corners of any facet, by module.
   std::vector<std::int8_t> contact_by_module() const {
     std::vector<std::int8_t> most(module_count_, kNotOnGround);
     for (std::size_t facet = 0; facet < facet_count_; ++facet) {

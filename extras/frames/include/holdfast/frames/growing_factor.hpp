@@ -72,7 +72,7 @@ class GrowingFactor {
     std::size_t slot = 0;  ///< Position of this row in the column's list.
   };
 
-  /// What undo() puts back: the columns that the last change has touched.
+  /// The journal from which undo() restores the columns that the last change has touched.
   struct Journal {
     std::vector<std::size_t> columns;
     std::vector<base::Mat6<double>> blocks;  ///< Per column D, D^-1, then its blocks of L.

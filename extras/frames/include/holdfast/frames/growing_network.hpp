@@ -11,7 +11,7 @@
 
 namespace holdfast::frames {
 
-/// How much work a GrowingNetwork has done.
+/// The amount of work that a GrowingNetwork has done.
 struct GrowingWork {
   std::int64_t solution_count = 0;       ///< Solutions, refinements included.
   std::int64_t refinement_count = 0;     ///< Of these, those that mended a residual.
@@ -28,7 +28,7 @@ class GrowingNetwork {
   /// 1e-12.
   static constexpr double kResidualMax = 1e-10;
 
-  /// Nothing is there at first. The network must outlive this.
+  /// Starts without elements. The network must outlive this.
   explicit GrowingNetwork(const SpringNetwork& network);
 
   const SpringNetwork& network() const { return *network_; }
@@ -45,8 +45,9 @@ class GrowingNetwork {
   /// Whether the element could be added: at least one of its ends is there.
   bool can_be_added(std::size_t element) const;
 
-  /// Each returns false, and changes nothing, if something then hung on nothing, as far as the
-  /// factorization sees it: whoever removes looks first.
+  /// Adds or removes an element; returns false, and changes nothing, if something would then be
+  /// held by nothing, as far as the factorization detects it. Callers that remove must check this
+  /// first.
   [[nodiscard]] bool add(std::size_t element);
   [[nodiscard]] bool remove(std::size_t element);
 

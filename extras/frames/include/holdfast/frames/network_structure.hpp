@@ -20,8 +20,8 @@ using plan::OrderOptions;
 using plan::OrderOutcome;
 using plan::Sense;
 
-/// How far a network in equilibrium uses up what it may, from the displacements of its nodes: safe
-/// up to 1.
+/// A measure of how much a network in equilibrium uses of what is allowed, from the displacements
+/// of its nodes: safe up to 1.
 using Criterion = std::function<double(std::span<const base::Vec6<double>> displacements)>;
 
 /// The largest translation of a node, of `limit_mm`.
@@ -29,11 +29,11 @@ Criterion translation_limit(double limit_mm);
 
 /// Says which element a search tries first.
 enum class Preference : std::uint8_t {
-  /// While growing what joins two nodes that are there, then what is nearest to the ground along
-  /// the
-  /// elements; while shrinking what is farthest. Costs nothing.
+  /// A growing search prefers elements that join two nodes that are there, then those nearest to
+  /// the ground along the elements; a shrinking one prefers the farthest. Costs nothing.
   kNearest,
-  /// While growing what uses up least, every candidate tried. For where the first finds nothing.
+  /// A growing search tries every candidate and prefers the one that uses up least. It serves where
+  /// kNearest finds nothing.
   kLeastUsed,
 };
 

@@ -10,8 +10,8 @@
 #include "holdfast/base/algebra.hpp"
 #include "holdfast/frames/growing_factor.hpp"
 
-/// What a planner builds or takes apart: nodes, springs between them, loads that come with the
-/// springs. Lattices of modules and printed frames are sources of it.
+/// Describes what a planner builds or takes apart: nodes, springs between them, loads that come
+/// with the springs. Lattices of modules and printed frames are sources of it.
 namespace holdfast::frames {
 
 using Vector3 = std::array<double, 3>;

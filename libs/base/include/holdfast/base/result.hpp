@@ -19,14 +19,14 @@ enum class ErrorCode : std::uint8_t {
   kUnsupported,  ///< Well-formed, but beyond what this version handles.
 };
 
-/// What went wrong and where. `message` names the value found and the value allowed.
+/// An error: what went wrong and where. `message` names the value found and the value allowed.
 struct Error {
   ErrorCode code = ErrorCode::kBadInput;
   std::string message = {};
   std::string where = {};  ///< File, line, or path inside a document; may be empty.
 };
 
-/// What is refused because it breaks a rule, and where.
+/// The error of something that breaks a rule.
 inline Error bad_input(std::string message, std::string where = {}) {
   return {.code = ErrorCode::kBadInput, .message = std::move(message), .where = std::move(where)};
 }

@@ -5,10 +5,10 @@
 #include <array>
 #include <cstdint>
 
-/// How a board with an STM32F091CB is wired: which USART, pins and DMA channels serve which face.
-/// The USARTs follow the port numbers of Blinky Blocks 2: front 0 is USART1, bottom 1 USART2, right
-/// 2, left 3, back 4, top 5. The pins are ours, as its schematics are not public: all of them exist
-/// on the package of 48 pins; change them here.
+/// Describes how a board with an STM32F091CB is wired: which USART, pins and DMA channels serve
+/// which face. The USARTs follow the port numbers of Blinky Blocks 2: front 0 is USART1, bottom 1
+/// USART2, right 2, left 3, back 4, top 5. The pins are ours, as its schematics are not public: all
+/// of them exist on the package of 48 pins; change them here.
 namespace holdfast::boards::stm32f0 {
 
 struct Line {
@@ -34,7 +34,7 @@ inline constexpr std::array<Line, 6> kLines = {{
 
 inline constexpr std::uint32_t kClockHz = 48'000'000;
 
-/// What a USART divides its clock by, to the nearest.
+/// The number by which a USART divides its clock, to the nearest.
 constexpr std::uint32_t baud_divisor(std::uint32_t baud) { return (kClockHz + baud / 2) / baud; }
 
 /// The bit rate of the lines of Blinky Blocks 2 or, with HOLDFAST_BLINKY_BLOCKS_1, of version 1.

@@ -49,8 +49,8 @@ struct Material {
   double gamma = 0;
 };
 
-/// What a facet on the ground does: pressed or not, and the signs of the torques about x and y over
-/// which it tilts, or 0.
+/// The state of a facet on the ground: pressed or not, and the signs of the torques about x and y
+/// over which it tilts, or 0.
 struct State {
   bool is_pressed = true;
   int tilt_x = 0;
@@ -94,7 +94,7 @@ struct Reading {
 
 Reading read(std::string_view text);
 
-/// What tells a robot from all others: SHA-256, hexadecimal, of its material, support level and
+/// The number that identifies a robot: SHA-256, hexadecimal, of its material, support level and
 /// modules in any order, as docs/formats.md says. Neither its name nor what is proved changes it.
 std::string digest(const Certificate& certificate);
 
@@ -121,15 +121,15 @@ struct Verification {
 /// the range, or says why that is not proved. Time and memory are linear in the fields.
 Verification verify(const Certificate& certificate);
 
-/// How far a field is from balance.
+/// The distance of a field from balance.
 struct Residual {
   std::vector<std::array<double, 6>> force;  ///< By module, 2^-bits; zero at fixed ones.
   double largest = 0;
   double rounding = 0;  ///< What is below this is rounding.
 };
 
-/// What a field leaves unbalanced, for those who make certificates; not proved. The fields may
-/// change between two calls, all else may not.
+/// Computes what a field leaves unbalanced, for those who make certificates; not proved. The fields
+/// may change between two calls, all else may not.
 class Residuals {
  public:
   /// Keeps a reference.

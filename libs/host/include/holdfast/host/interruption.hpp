@@ -7,10 +7,10 @@
 /// Long work that can be given up half way, by an exception of whoever asked for it.
 namespace holdfast::host {
 
-/// While it lives, long work on this thread calls `ask` now and then, many times a second. What
-/// that throws ends the work and is thrown by it, once the threads that took part have ended too.
-/// Nothing is left half done but what the caller holds. `ask` is called on this thread alone. Of
-/// several the newest is asked.
+/// Lets long work on this thread call `ask` now and then, many times a second, while this object
+/// lives. An exception of `ask` ends the work, which throws it once the threads that took part have
+/// ended; only what the caller holds may be left half done. `ask` is called on this thread alone;
+/// if there are several objects, only the newest one's is.
 class Interruptible {
  public:
   explicit Interruptible(std::function<void()> ask);
@@ -26,8 +26,8 @@ class Interruptible {
   const Interruptible* before_;
 };
 
-/// Asks, if there is anybody to be asked; else it takes no time that matters. What takes long calls
-/// it every millisecond or so.
+/// Calls `ask`, if there is any; else the call takes no time that matters. Long work calls this
+/// every millisecond or so.
 void ask_whether_to_go_on();
 
 /// Whether there is anybody to be asked on this thread.

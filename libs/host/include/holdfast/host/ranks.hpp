@@ -16,7 +16,7 @@
 /// it (MPI) is not known here. All of them call the same functions in the same order.
 namespace holdfast::host {
 
-/// Something that another rank owns.
+/// An item that another rank owns.
 struct Original {
   std::int32_t rank = 0;
   std::int32_t index = 0;  ///< There.
@@ -24,7 +24,7 @@ struct Original {
   friend auto operator<=>(const Original&, const Original&) = default;
 };
 
-/// A copy of it here, in an array whose first items are this rank's own.
+/// A copy of another rank's item, in an array whose first items are this rank's own.
 struct Copy {
   Original original;
   std::int32_t place = 0;  ///< Index in that array.
@@ -44,7 +44,8 @@ class Halo {
 
 /// A linear system for flexible conjugate gradients: K x = b.
 struct KrylovTask {
-  /// Asked before each iteration, with its number from 0 on and r . M^-1 r; true ends the method.
+  /// A function that is called before each iteration, with its number from 0 on and r . M^-1 r;
+  /// true ends the method.
   using IsOver = std::function<bool(int, double)>;
 
   std::span<double> x;                    ///< What the task itself works on.
@@ -57,7 +58,7 @@ struct KrylovTask {
   IsOver is_over;
 };
 
-/// What time goes to, for those who keep a log.
+/// The kinds of work on which time is spent, for those who keep a log.
 enum class Work : std::uint8_t { kProduct, kCycle };
 
 class Ranks {
@@ -85,7 +86,7 @@ class Ranks {
   /// Makes the exchange for arrays that have `own_count` items of this rank's own.
   virtual std::unique_ptr<Halo> make_halo(std::size_t own_count, std::span<const Copy> copies) = 0;
 
-  /// Work begins, or ends.
+  /// Logs that work begins or ends.
   virtual void log(Work work, bool is_begin) = 0;
 
   /// Whether the task's own method serves, and not another that somebody has asked for.
@@ -141,13 +142,13 @@ class SingleRank final : public Ranks {
 
   void watch(const KrylovTask& task) override { task.iterate(task.is_over); }
 
-  /// Never asked, as the own method serves.
+  /// Solves nothing: it is never called, as the own method serves.
   bool solve(const KrylovTask&, std::span<const double>, std::span<double>) override {
     return false;
   }
 };
 
-/// It has no state, so one serves all problems and threads.
+/// The one rank of a process by itself. It has no state, so one serves all problems and threads.
 inline Ranks& single_rank() {
   static SingleRank single;
   return single;

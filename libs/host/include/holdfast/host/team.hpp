@@ -77,7 +77,7 @@ class Team {
     hand_over(count, pieces);
   }
 
-  /// work(begin, end) of every chunk of [0, count), in their order.
+  /// Makes the list of work(begin, end) of every chunk of [0, count), in their order.
   template <class Value, class Work>
   void map(std::size_t count, std::vector<Value>& values, const Work& work) {
     values.resize((count + kChunk - 1) / kChunk);
@@ -104,7 +104,7 @@ class Team {
 
   class Crew;
 
-  /// What becomes of a team's threads.
+  /// The deleter of a team, which decides what becomes of its threads.
   struct Dismiss {
     void operator()(Crew* crew) const;
   };

@@ -12,7 +12,7 @@ namespace holdfast::host {
 /// The noun for one or for several; `many` is the plural if that is not `one` with an s.
 std::string noun(bool is_one, std::string_view one, std::string_view many = {});
 
-/// "1 step", "2 steps"; with a plural of its own "1 foot", "2 feet".
+/// Writes "1 step", "2 steps"; with a plural of its own "1 foot", "2 feet".
 template <std::integral Count>
 std::string counted(Count count, std::string_view one, std::string_view many = {}) {
   return std::to_string(count) + ' ' + noun(count == 1, one, many);
@@ -21,7 +21,7 @@ std::string counted(Count count, std::string_view one, std::string_view many = {
 /// A number with so many decimals; a zero has no sign.
 std::string fixed(double number, int decimals);
 
-/// fixed(), with a plus before what is greater than zero.
+/// Writes as fixed() does, with a plus sign before numbers greater than zero.
 std::string fixed_signed(double number, int decimals);
 
 /// A number with so many significant digits at most; a zero has no sign.

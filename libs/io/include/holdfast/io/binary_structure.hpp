@@ -54,13 +54,13 @@ struct BinaryHead {
 
   base::Cell low_corner() const { return {low[0], low[1], low[2]}; }
 
-  /// Where the records begin: at a multiple of 16 bytes.
+  /// The place where the records begin, at a multiple of 16 bytes.
   std::uint64_t records_begin() const { return (sizeof(BinaryHead) + text_size + 15) / 16 * 16; }
 };
 
 static_assert(sizeof(BinaryHead) == 72);
 
-/// FNV-1a, 64 bits.
+/// The FNV-1a sum of a text, 64 bits.
 std::uint64_t text_sum(std::string_view text);
 
 /// A sum that can be made in parts: of a hash of each record and its number in the whole structure,
@@ -70,18 +70,18 @@ std::uint64_t record_sum(std::span<const ModuleRecord> records, std::uint64_t fi
 /// The head of a file of so many bytes, of which `begin` are the first ones.
 base::Result<BinaryHead> read_binary_head(std::string_view begin, std::uint64_t file_size);
 
-/// The document that the text behind a head is of: all but modules. Errors: another checksum; as of
+/// The document of the text behind a head: all but modules. Errors: another checksum; those of
 /// read_json(); it has steps.
 base::Result<ReadDocument> read_binary_text(const BinaryHead& head, std::string_view text,
                                             const ReadOptions& options = {});
 
-/// What is wrong with records, of which the first is number `first` of all; empty if nothing is.
-/// `before` is the key of the record before them, -1 if there is none.
+/// Says what is wrong with records, of which the first is number `first` of all; empty if nothing
+/// is. `before` is the key of the record before them, -1 if there is none.
 std::string find_record_fault(std::span<const ModuleRecord> records, std::uint64_t first,
                               const base::Lattice& lattice, const base::Cell& low,
                               std::int64_t before);
 
-/// What is wrong with the sum of all records.
+/// Returns an error if the sum of all records is wrong.
 std::optional<base::Error> find_sum_fault(const BinaryHead& head, std::uint64_t record_sum);
 
 /// A structure as it stands in a file.
@@ -91,23 +91,23 @@ struct BinaryStructure {
   std::vector<ModuleRecord> records;  ///< Along the curve.
 };
 
-/// The first planned step of a document and what exists. Errors: as of make_spec(); two modules in
-/// one cell.
+/// The first planned step of a document and what exists. Errors: those of make_spec(); two modules
+/// in one cell.
 base::Result<BinaryStructure> make_binary(const Document& document);
 
-/// What a document says beside its modules, as binary structures have it.
+/// The text of a binary structure: all that a document says beside its modules.
 std::string common_text(const Document& document);
 
-/// What stands before the records.
+/// The bytes of a binary structure before the records.
 std::string binary_beginning(const base::Cell& low, const std::string& text,
                              std::uint64_t module_count, std::uint64_t record_sum);
 
 void write_binary(std::ostream& out, const BinaryStructure& structure);
 
-/// What a document has that a binary structure has no room for; empty if nothing.
+/// Lists what a document has that a binary structure has no room for; empty if nothing.
 std::vector<std::string> lost_in_binary(const Document& document);
 
-/// Error::where is the byte, or a place in the text.
+/// Reads a binary structure; Error::where is the byte, or a place in the text.
 base::Result<ReadDocument> read_binary(std::string_view bytes, const ReadOptions& options = {});
 
 }  // namespace holdfast::io

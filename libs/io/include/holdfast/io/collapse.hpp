@@ -9,7 +9,7 @@
 
 namespace holdfast::io {
 
-/// What the page shows of a limit load, as JSON: the factor (null: none is too large), the
+/// Writes what the page shows of a limit load as JSON: the factor (null: none is too large), the
 /// connections that give way and the velocities of the modules; null if none was found.
 std::string collapse_json(const model::Robot& robot, const limit::LimitLoad& load);
 

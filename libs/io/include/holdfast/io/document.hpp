@@ -51,8 +51,8 @@ struct KnownAnswer {
 
 enum class Format : std::uint8_t { kVisibleSimXml, kJson, kBinary };
 
-/// What a document was read from, in whose words places in it are named. It says nothing of the
-/// structure, so any two are equal.
+/// The kind of file that a document was read from, in whose words places in it are named. It says
+/// nothing of the structure, so any two are equal.
 struct Origin {
   Format format = Format::kJson;
 
@@ -95,8 +95,8 @@ inline constexpr int kNestingMax = 64;
 /// is not white space: '<' for XML, '{' or '[' for JSON; an error for anything else.
 base::Result<Format> detect_format(std::string_view text);
 
-/// What holds where a file says nothing of it, where a file that says otherwise is an error, and
-/// what a file may hold.
+/// The values that hold where a file says nothing, and are an error where it says otherwise; and
+/// the limits of what a file may hold.
 struct ReadOptions {
   std::optional<base::Lattice> lattice = {};  ///< One of kNamedLattices.
   std::string robot = {};  ///< One of model::robot_catalogue(); empty: Table I of the paper.
@@ -115,9 +115,9 @@ base::Result<ReadDocument> read_json(std::string_view text, const ReadOptions& o
 /// all, so that older programs read it.
 int json_version(const Document& document);
 
-/// What write_visiblesim adds to every cell and to support_z: VisibleSim knows no cell below 0. The
-/// attribute `shift` of <holdfast> says it, and the reader takes it back. Positions in scenery,
-/// targets and attributes stay as they are. Layers go up by an even number where they are
+/// The offset that write_visiblesim adds to every cell and to support_z: VisibleSim knows no cell
+/// below 0. The attribute `shift` of <holdfast> says it, and the reader takes it back. Positions in
+/// scenery, targets and attributes stay as they are. Layers go up by an even number where they are
 /// staggered. Error: the cells reach further than its grid can.
 base::Result<base::Cell> visiblesim_shift(const Document& document);
 
@@ -126,9 +126,9 @@ base::Result<base::Cell> visiblesim_shift(const Document& document);
 inline constexpr std::int64_t kBoxCellsMax = 10'000;
 bool is_large_box(const model::Obstacle& obstacle);
 
-/// Reading back gives an equal document. Comments and the layout of the text are not kept, and
-/// blocksLine and blockBox are written as single blocks. Where visiblesim_shift is an error, cells
-/// are written as they are.
+/// Writes a document; reading it back gives an equal one. Comments and the layout of the text are
+/// not kept, and blocksLine and blockBox are written as single blocks. Where visiblesim_shift is an
+/// error, cells are written as they are.
 std::string write_visiblesim(const Document& document);
 std::string write_json(const Document& document);
 
@@ -137,43 +137,42 @@ std::string write_json(const Document& document);
 /// shape that stands in the layer on the floor. Readers give them as warnings.
 std::vector<std::string> doubtful_figures(const Document& document);
 
-/// What model::Robot::create makes the robot of the document with the first step from, without its
-/// plan. Errors: a number that is not allowed; a module is of a kind that the document does not
-/// have.
+/// Makes the specification of the robot of the document with the first step, without its plan.
+/// Errors: a number that is not allowed; a module is of a kind that the document does not have.
 base::Result<model::RobotSpec> make_spec(const Document& document);
 
 /// A robot and what happens to it.
 struct Sequence {
   model::RobotSpec start;  ///< The existing modules.
-  /// Document::steps from first_step() on, each as a step that attaches its modules, then the plan.
-  /// A load on a cell where no module is at first belongs to the first step that attaches one
-  /// there.
+  /// The steps of the document from first_step() on, each as a step that attaches its modules, then
+  /// the plan. A load on a cell where no module is at first belongs to the first step that attaches
+  /// one there.
   std::vector<model::Step> steps;
 };
 
-/// Which of Document::steps is the first step of make_sequence(): the second, index 1, where
-/// nothing is planned.
+/// Returns the index in Document::steps of the first step of make_sequence(): 1 where nothing is
+/// planned.
 std::size_t first_step(const Document& document);
 
 /// The number of steps of make_sequence().
 std::size_t step_count(const Document& document);
 
-/// Where a step of make_sequence(), by its number, stands in the file: a JSON pointer, or the
-/// element of VisibleSim XML.
+/// Returns the place in the file of a step of make_sequence(), by its number: a JSON pointer, or
+/// the element of VisibleSim XML.
 std::string step_pointer(const Document& document, std::size_t step);
 
-/// Where the file lists steps beyond the first, or would list them.
+/// Returns the place where the file lists steps beyond the first, or would list them.
 std::string step_list(const Document& document);
 
-/// Errors: as of make_spec().
+/// Makes the sequence of a document. Errors: those of make_spec().
 base::Result<Sequence> make_sequence(const Document& document);
 
 /// The error of a robot that could not be made of the document, with the lattice in which its
 /// modules are connected where they are not in the one taken: files for VisibleSim do not say it.
 base::Error with_other_lattice(base::Error error, const Document& document);
 
-/// The robot with the first step; errors as of make_spec(), and of model::Robot::create
-/// with_other_lattice(); threads as of the latter.
+/// Makes the robot with the first step; threads are those of model::Robot::create. Errors: those of
+/// make_spec(), and those of model::Robot::create with_other_lattice().
 base::Result<model::Robot> make_robot(const Document& document, int thread_count = 0);
 
 }  // namespace holdfast::io

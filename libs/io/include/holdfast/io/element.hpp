@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-/// What a structure keeps of VisibleSim XML as it stands there.
+/// Stores the parts of VisibleSim XML that a structure keeps as they stand there.
 namespace holdfast::io {
 
-/// Name and value, in the order of the file.
+/// Names and values, in the order of the file.
 using Attributes = std::vector<std::pair<std::string, std::string>>;
 
 /// An XML element that mechanics have no use for, kept whole (camera, spotlight, csg).

@@ -15,12 +15,12 @@
 #include "holdfast/model/robot.hpp"
 #include "holdfast/model/step.hpp"
 
-/// What a structure can say from version 2 of the JSON format on: other lattices than the cubic
-/// one, other environments than a floor, other loads than weight, several kinds of modules, plans
-/// of steps.
+/// Stores what a structure can say from version 2 of the JSON format on: other lattices than the
+/// cubic one, other environments than a floor, other loads than weight, several kinds of modules,
+/// plans of steps.
 namespace holdfast::io {
 
-/// How far one value of a connector parameter reaches.
+/// The reach of one value of a connector parameter.
 enum class Spread : std::uint8_t {
   kAll,      ///< One value for all directions.
   kClasses,  ///< Two: for vertical, then for lateral connections.
@@ -37,7 +37,7 @@ struct ConnectorParameter {
   friend bool operator==(const ConnectorParameter&, const ConnectorParameter&) = default;
 };
 
-/// What a file says of connections, beyond Table I of [Piranda 2021].
+/// The parameters of connections in a file, beyond Table I of [Piranda 2021].
 struct Connectors {
   std::vector<ConnectorParameter> parameters;  ///< In the order of the file.
   std::optional<model::BendingLaw> bending;    ///< None: as in the paper, kSquare.
@@ -54,8 +54,8 @@ struct KindEntry {
   friend bool operator==(const KindEntry&, const KindEntry&) = default;
 };
 
-/// What an existing or planned module has of its own. Kept apart from the modules, as most have
-/// nothing.
+/// The parameters that an existing or planned module has of its own. They are kept apart from the
+/// modules, as most have none.
 struct OwnParameters {
   std::size_t step = 0;    ///< 0: one of Document::modules; else one of Document::steps[step - 1].
   std::size_t module = 0;  ///< Index there.

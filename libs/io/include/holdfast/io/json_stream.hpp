@@ -66,7 +66,7 @@ class JsonStream {
     value(content);
   }
 
-  /// A stream into another text that goes on in the container that is open here: `is_first` if
+  /// A stream into another text that continues the container that is open here; `is_first` if
   /// nothing stands in it yet. What it appends can be put behind this one's text.
   JsonStream part(std::string& out, bool is_first) const;
 

@@ -9,7 +9,7 @@
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/base/result.hpp"
 
-/// What lattices are called in files and on the command line, once for all that read or show them.
+/// Names the lattices in files and on the command line, once for all that read or show them.
 namespace holdfast::io {
 
 struct NamedLattice {
@@ -34,8 +34,8 @@ constexpr std::string_view lattice_name(const base::Lattice& lattice) {
 struct SimulatedModules {
   std::string_view name;
   base::Lattice lattice;
-  /// <blockList blockSize> of its examples, mm, if it is not cubic and no other kind has the same;
-  /// else zeros.
+  /// The <blockList blockSize> of VisibleSim's examples, mm, if the lattice is not cubic and no
+  /// other kind has the same; else zeros.
   std::array<double, 3> block_size_mm = {};
 };
 

@@ -9,7 +9,7 @@
 #include "holdfast/io/document.hpp"
 #include "holdfast/plan/move_plan.hpp"
 
-/// What came of a search for moves from one shape to another, for programs and for people.
+/// Reports the result of a search for moves from one shape to another, for programs and for people.
 namespace holdfast::io {
 
 struct MoveReport {
@@ -19,15 +19,15 @@ struct MoveReport {
   double seconds = 0;
 };
 
-/// The robot of a document as it stands; `which` is what a message calls it. Errors: as of
+/// The robot of a document as it stands; `which` is what a message calls it. Errors: those of
 /// make_spec(); it has planned modules or steps.
 base::Result<model::RobotSpec> standing_spec(const Document& document, std::string_view which);
 
-/// The robot and where it is to go: existing modules of both. Errors: as of standing_spec() for
+/// The robot and where it is to go: existing modules of both. Errors: those of standing_spec() for
 /// each of them.
 base::Result<plan::MoveTask> move_task(const Document& start, const Document& target);
 
-/// See docs/formats.md.
+/// The report in JSON; see docs/formats.md.
 std::string move_json(const MoveReport& report);
 
 /// Lines for people; a line feed at the end.

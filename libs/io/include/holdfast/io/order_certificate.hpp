@@ -13,7 +13,7 @@
 /// that there is.
 namespace holdfast::io {
 
-/// The task's target: all modules of a document, planned ones as well, exist. Errors: as of
+/// The task's target: all modules of a document, planned ones as well, exist. Errors: those of
 /// make_spec(); the document has further steps.
 base::Result<model::RobotSpec> order_target(const Document& document);
 

@@ -9,7 +9,7 @@
 #include "holdfast/plan/order.hpp"
 #include "holdfast/plan/order_help.hpp"
 
-/// What came of a search for an order, for programs and for people.
+/// Reports the result of a search for an order, for programs and for people.
 namespace holdfast::io {
 
 struct OrderReport {
@@ -23,15 +23,16 @@ struct OrderReport {
   bool is_interrupted = false;  ///< The search was ended from outside.
 };
 
-/// See docs/formats.md.
+/// The report in JSON; see docs/formats.md.
 std::string order_json(const OrderReport& report);
 
 std::string order_text(const OrderReport& report);
 
-/// Behind that: where the order begins, and its first steps, for those who have it written nowhere.
+/// The text that follows order_text() if the order is written to no file: where it begins, and its
+/// first steps.
 std::string order_way_text(const OrderReport& report);
 
-/// "found", "none", "not-found".
+/// Returns "found", "none" or "not-found".
 const char* name(plan::OrderOutcome outcome);
 
 }  // namespace holdfast::io

@@ -16,10 +16,10 @@ namespace holdfast::io {
 /// An SVG of the robot in isometric view: every module coloured by its worst connection as in
 /// Fig. 6 of [Piranda 2021] (green to orange safe, red broken, purple unstable, blue fixed, planned
 /// ones dashed), the failing connection marked, the support polygon and the centre of mass, a
-/// legend. Modules look like those of their lattice: cubes, prisms, standing discs, balls. Of the
-/// obstacles, which are those that the robot was made with, what is near is drawn translucent; the
-/// facets that touch say what they do; payloads, and gravity that does not point straight down, are
-/// arrows. Self-contained; `title` is shown and escaped.
+/// legend. Modules look like those of their lattice: cubes, prisms, standing discs, balls. Near
+/// obstacles are drawn translucent; `obstacles` are those that the robot was made with. The facets
+/// that touch say what they do; payloads, and gravity that does not point straight down, are
+/// arrows. The text is self-contained; `title` is shown and escaped.
 std::string write_svg(const model::Robot& robot, const verdict::Assessment& assessment,
                       std::string_view title, std::span<const model::Obstacle> obstacles = {});
 
@@ -29,8 +29,9 @@ struct Ghost {
   std::optional<double> load_ratio_max = {};
 };
 
-/// The same picture of a robot with ghosts: its last modules, planned ones, which are not there.
-/// They are glass in the colours of their verdicts. `assessment` is that of the robot without them.
+/// Returns the picture of write_svg() with ghosts: the robot's last modules, which are planned ones
+/// and drawn as glass in the colours of their verdicts. `assessment` is that of the robot without
+/// them.
 std::string write_svg_with_ghosts(const model::Robot& robot, std::span<const Ghost> ghosts,
                                   const verdict::Assessment& assessment, std::string_view title,
                                   std::span<const model::Obstacle> obstacles = {});
@@ -44,8 +45,9 @@ std::string write_svg_with_ghosts(const model::Robot& robot, std::span<const Gho
 void write_vtu(std::ostream& out, const model::Robot& robot, const verdict::Assessment& assessment,
                const WriteOptions& options = {}, std::span<const model::Obstacle> obstacles = {});
 
-/// The same of a part of a robot (model/robot_part.hpp): its first `own_count` modules, and the
-/// connections and facets that begin at them, without obstacles. The stream can be sought in.
+/// Writes a part of a robot (model/robot_part.hpp) as write_vtu() does: its first `own_count`
+/// modules, and the connections and facets that begin at them, without obstacles. The stream must
+/// be seekable.
 void write_vtu_piece(std::ostream& out, const model::Robot& part, std::size_t own_count,
                      const verdict::Assessment& assessment, const WriteOptions& options = {});
 

@@ -27,10 +27,10 @@ std::string one_line(std::string_view text);
 /// is the one that was assessed.
 std::string reason_text(const model::Robot& robot, const verdict::Reason& reason);
 
-/// The same with the cells that verdict::cells_of() has found.
+/// Returns the sentence for a reason whose cells verdict::cells_of() has found.
 std::string reason_text(const verdict::Reason& reason, std::span<const base::Cell> cells);
 
-/// What a report says of a robot of which the entry's is a part only.
+/// The facts of the whole robot that a report needs if its entry's robot is only a part.
 struct WholeRobot {
   std::size_t existing_count = 0;
   std::size_t planned_count = 0;
@@ -53,7 +53,7 @@ struct ReportEntry {
   const WholeRobot* whole = nullptr;        ///< If the robot is a part: no connections are listed.
 };
 
-/// Which connections a report or table lists.
+/// The connections that a report or table lists.
 struct ConnectionChoice {
   enum class Kind : std::uint8_t {
     kAll,      ///< In the robot's order.

@@ -13,7 +13,7 @@
 #include "holdfast/io/json_stream.hpp"
 #include "holdfast/plan/sequence.hpp"
 
-/// What is said of a sequence of steps.
+/// Reports the judgement of a sequence of steps.
 namespace holdfast::io {
 
 /// A judged sequence, for a report. Views must outlive the call.
@@ -31,7 +31,7 @@ void write_steps_json(std::ostream& out, const StepsEntry& entry);
 /// Writes a member: a stage of a step as {"step", "stage"}, or null.
 void write_stage_id(JsonStream& json, std::string_view key, const std::optional<plan::StageId>& id);
 
-/// What a step does, in a few words: "moves (1,0,1) to (2,0,1), attaches 3 modules".
+/// Says what a step does, in a few words: "moves (1,0,1) to (2,0,1), attaches 3 modules".
 std::string step_text(const Document& document, std::size_t step);
 
 /// The report for people: a line for every step if there are few, else for those that are not safe

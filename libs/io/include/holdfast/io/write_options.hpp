@@ -6,10 +6,10 @@
 
 namespace holdfast::io {
 
-/// How a large report or picture is written. The bytes depend on none of it.
+/// The options for writing a large report or picture. The bytes depend on none of them.
 struct WriteOptions {
   int thread_count = 0;  ///< 0: as many as the machine has cores.
-  /// Called now and then with the share that is written, from 0 to 1.
+  /// A function that is called now and then with the share that is written, from 0 to 1.
   std::function<void(double share)> progress = {};
 };
 

@@ -24,7 +24,7 @@
 /// up. So Ix bends lateral beams in the vertical plane (it is VisibleSim's globalIy).
 namespace holdfast::mechanics {
 
-/// What a beam is made of. Units: MPa, mm, mm^2, mm^4.
+/// The section and material of a beam. Units: MPa, mm, mm^2, mm^4.
 template <class Real>
 struct BeamSection {
   Real elastic_modulus = 0;  ///< E

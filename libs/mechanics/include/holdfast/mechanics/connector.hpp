@@ -4,10 +4,10 @@
 
 #include "holdfast/mechanics/beam.hpp"
 
-/// Does a connection hold? Eq. (17) of [Piranda 2021].
+/// Decides whether a connection holds, by Eq. (17) of [Piranda 2021].
 namespace holdfast::mechanics {
 
-/// What holds two modules together: the data of Eq. (17).
+/// The connector that holds two modules together: the data of Eq. (17).
 template <class Real>
 struct Connector {
   Real width = 0;     ///< mm, of the face: twice the lever on which bending opens the connection.
@@ -20,14 +20,14 @@ constexpr const Connector<Real>& weaker(const Connector<Real>& a, const Connecto
   return b.strength < a.strength ? b : a;
 }
 
-/// What a connection carries, in its middle.
+/// The load of a connection, in its middle.
 template <class Real>
 struct ConnectionLoad {
   Real axial = 0;    ///< N; tension is positive.
   Real bending = 0;  ///< N mm; the larger of |mx| and |my|.
 };
 
-/// What a connection carries, given the force in its middle, Eq. (16), local frame.
+/// The load of a connection, given the force in its middle, Eq. (16), local frame.
 template <class Real>
 ConnectionLoad<Real> connection_load(const base::Vec6<Real>& middle_force);
 
@@ -43,9 +43,9 @@ Real load_ratio(const Connector<Real>& connector, const base::Vec6<Real>& middle
   return load_ratio(connection_load(middle_force), connector.width, connector.strength);
 }
 
-/// What a module says of a load ratio in its own precision: 1 or more breaks, and so does what is
-/// not a number. A module's numbers have seven digits; on a host, whose rounding is known to be
-/// smaller, verdict::breaks() decides.
+/// Decides whether a load ratio in a module's own precision breaks: 1 or more does, and so does
+/// what is not a number. A module's numbers have seven digits; on a host, whose rounding is known
+/// to be smaller, verdict::breaks() decides.
 template <class Real>
 constexpr bool breaks(Real load_ratio) {
   return !(load_ratio < 1);

@@ -29,7 +29,7 @@ enum class Limit : std::uint8_t { kOpens, kSlips, kShears, kTwists };
 
 inline constexpr int kLimitCount = 4;
 
-/// "opens", "slips", "shears", "twists".
+/// Returns "opens", "slips", "shears" or "twists".
 const char* name(Limit limit);
 
 enum class BendingLaw : std::uint8_t {
@@ -45,7 +45,7 @@ struct ConnectorLaw {
   BendingLaw bending = BendingLaw::kSquare;
   double shear_strength_n = kUnlimited;
   double torsion_strength_nmm = kUnlimited;
-  /// Coefficient of friction mu, more than 0. None: does not slip.
+  /// The coefficient of friction mu, more than 0; none if the connection does not slip.
   std::optional<double> friction = {};
   double torsion_radius_mm = kUnlimited;  ///< r; unlimited: does not turn.
   /// An opening of the facet's edge beyond which contacts of power and data part: a warning.
@@ -57,7 +57,7 @@ struct ConnectorLaw {
 /// The law of a connection of two modules: of every number the one that holds less.
 ConnectorLaw weaker(const ConnectorLaw& a, const ConnectorLaw& b);
 
-/// What a connection carries, given by the numbers of its limits: N axially, M bending, V across, T
+/// The load of a connection as the numbers of its limits: N axially, M bending, V across, T
 /// torsion; units N and N mm.
 struct ConnectionForce {
   double axial_n = 0;
@@ -66,7 +66,7 @@ struct ConnectionForce {
   double torsion_nmm = 0;
 };
 
-/// M of a force in the middle, local frame (Eq. 16).
+/// The bending moment M of a force in the middle, local frame (Eq. 16).
 template <class Length>
 double bending_moment(const ConnectorLaw& law, const base::Vec6<double>& middle_force,
                       const Length& length) {
@@ -80,7 +80,7 @@ double bending_moment(const ConnectorLaw& law, const base::Vec6<double>& middle_
   return size_x < size_y ? size_y : size_x;
 }
 
-/// These numbers of a force in the middle, local frame (Eq. 16).
+/// The numbers of ConnectionForce for a force in the middle, local frame (Eq. 16).
 template <class Length>
 ConnectionForce connection_force(const ConnectorLaw& law, const base::Vec6<double>& middle_force,
                                  const Length& length) {
@@ -90,8 +90,8 @@ ConnectionForce connection_force(const ConnectorLaw& law, const base::Vec6<doubl
           .torsion_nmm = middle_force[5]};
 }
 
-/// How far the facet's edge opens, for a force in the middle, local frame: N L / (E A) and the
-/// angles of bending times the lever; 0 where it is pressed.
+/// The width by which the facet's edge opens, for a force in the middle, local frame: N L / (E A)
+/// and the angles of bending times the lever; 0 where it is pressed.
 template <class Length>
 double gap_mm(const ConnectorLaw& law, const BeamStiffness<double>& beam,
               const base::Vec6<double>& middle_force, const Length& length) {

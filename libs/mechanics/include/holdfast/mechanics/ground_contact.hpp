@@ -51,7 +51,7 @@ struct ContactState {
   std::int8_t tilt_x = 0;  ///< Sign of mx^ while the facet tilts about x, else 0.
   std::int8_t tilt_y = 0;  ///< Sign of my^ while the facet tilts about y, else 0.
 
-  /// How many states there are; code() counts them from 0.
+  /// The number of states; code() counts them from 0.
   static constexpr int kCodeCount = 10;
 
   /// A number for each state: 0 for a facet that does not press, 5 for one that presses all over.

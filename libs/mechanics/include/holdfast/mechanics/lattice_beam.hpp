@@ -46,7 +46,7 @@ class LatticeBeam {
   /// F_pq = K11 u_p + K12 u_q in the global frame; q is the neighbour of p in `direction`.
   Vec end_force(base::Direction direction, const Vec& u_p, const Vec& u_q) const;
 
-  /// Eq. (16), in the local frame.
+  /// The force in the middle of the connection by Eq. (16), in the local frame.
   Vec middle_force(base::Direction direction, const Vec& u_p, const Vec& u_q) const;
 
   /// K11_pq and K12_pq, global frame.

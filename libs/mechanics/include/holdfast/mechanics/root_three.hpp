@@ -44,7 +44,7 @@ class RootThree {
 
   friend bool operator>=(const RootThree& a, const RootThree& b) { return !(a < b); }
 
-  /// Exact for all numbers up to 2^62.
+  /// The sign of the number, exact for numbers up to 2^62.
   int sign() const;
 
  private:

@@ -32,7 +32,7 @@ struct SupportCorners {
 /// The corners with which a resting module presses, from its contact state.
 SupportCorners support_corners(const base::Cell& cell, ContactState state);
 
-/// What a fixed module contributes: it holds alone.
+/// The support of a fixed module, which holds alone.
 constexpr SupportCorners fixed_support() { return {.stable = true}; }
 
 /// The union; `stable` wins, three corners off one line become `stable`, of several on one line
@@ -40,8 +40,8 @@ constexpr SupportCorners fixed_support() { return {.stable = true}; }
 SupportCorners merge(const SupportCorners& a, const SupportCorners& b);
 
 /// Merges corners that have been rounded to whole units: three are taken for being on one line
-/// where rounding may have put them off it. Of several on one line the two that are furthest apart
-/// are kept, which says most about a fourth.
+/// where rounding may have put them off it. It keeps the two of several on one line that are
+/// furthest apart, which says most about a fourth.
 SupportCorners merge_rounded(const SupportCorners& a, const SupportCorners& b);
 
 }  // namespace holdfast::mechanics

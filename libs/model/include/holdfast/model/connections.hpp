@@ -11,7 +11,7 @@
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/host/team.hpp"
 
-/// Which modules of a robot are neighbours, and which are connected, in few bytes.
+/// Stores which modules of a robot are neighbours, and which are connected, in few bytes.
 namespace holdfast::model {
 
 /// A connection, that is a beam, between two modules in neighbouring cells; `b` is the neighbour of

@@ -7,7 +7,8 @@
 #include "holdfast/base/algebra.hpp"
 #include "holdfast/mechanics/connector_law.hpp"
 
-/// When a connection breaks (mechanics/connector_law.hpp), with the standard library's square root.
+/// Decides when a connection breaks (mechanics/connector_law.hpp), with the standard library's
+/// square root.
 namespace holdfast::model {
 
 using mechanics::BendingLaw;
@@ -24,7 +25,7 @@ using mechanics::weaker;
 /// The numbers of a force in the middle, local frame (Eq. 16).
 ConnectionForce connection_force(const ConnectorLaw& law, const base::Vec6<double>& middle_force);
 
-/// M of a force in the middle, local frame.
+/// The bending moment M of a force in the middle, local frame.
 double bending_moment(const ConnectorLaw& law, const base::Vec6<double>& middle_force);
 
 /// The ratio of every limit, by Limit, for a force in the middle, local frame (Eq. 16); minus

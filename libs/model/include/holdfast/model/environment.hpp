@@ -12,16 +12,16 @@
 #include "holdfast/base/cell.hpp"
 #include "holdfast/model/cell_index.hpp"
 
-/// What a robot touches: cells that the environment occupies, and a floor.
+/// Describes what a robot touches: cells that the environment occupies, and a floor.
 namespace holdfast::model {
 
-/// How the environment holds a facet that touches it.
+/// The way in which the environment holds a facet that touches it.
 enum class Hold : std::uint8_t {
   kContact,  ///< Unilaterally, Eqs. (6)-(12): it may tilt and lift.
   kBonded,   ///< As a module with connectors would that does not move.
 };
 
-/// What touching something means besides the place.
+/// The properties of a contact besides its place.
 struct Touch {
   Hold hold = Hold::kContact;
   std::optional<double> friction = {};  ///< Coefficient, 0 or more. None: no slip.

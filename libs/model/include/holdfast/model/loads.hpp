@@ -9,7 +9,7 @@
 #include "holdfast/base/algebra.hpp"
 #include "holdfast/model/material.hpp"
 
-/// What acts on a robot from outside, as data: the right-hand side of its equilibrium (Eq. 5).
+/// Stores what acts on a robot from outside: the right-hand side of its equilibrium (Eq. 5).
 namespace holdfast::model {
 
 /// A force and a torque at the node of every module, [fx fy fz mx my mz] in N and N mm, global

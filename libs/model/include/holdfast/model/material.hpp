@@ -33,7 +33,7 @@ struct Material {
   friend bool operator==(const Material&, const Material&) = default;
 };
 
-/// What files, forms and messages have to know of one number of a material.
+/// The facts of one number of a material that files, forms and messages have to know.
 struct MaterialParameter {
   std::string_view key;    ///< In holdfast JSON, with the unit.
   const char* visiblesim;  ///< Attribute of VisibleSim's <parameters>; nullptr: it has no word.
@@ -41,7 +41,7 @@ struct MaterialParameter {
   const char* label;  ///< For people.
   const char* unit;   ///< For people; empty for a ratio.
   double lowest = 1e-12;
-  /// Beyond these two, products of parameters leave the range of double or lose all their digits.
+  /// Products of parameters leave the range of double, or lose all their digits, beyond these two.
   double highest = 1e12;
 };
 
@@ -73,14 +73,14 @@ mechanics::BeamSection<double> beam_section(const Material& material);
 /// Weight of one module in N.
 double module_weight_n(const Material& material);
 
-/// What joins two modules of this material, by the class of their direction: Eq. (17) with the
-/// width of a face and the strength of that class.
+/// The connector between two modules of this material, by the class of their direction: Eq. (17)
+/// with the width of a face and the strength of that class.
 mechanics::Connector<double> connector(const Material& material, base::ConnectorClass kind);
 
-/// Why a parameter cannot have this value, if it cannot.
+/// Says why a parameter cannot have this value, if it cannot.
 std::optional<std::string> find_fault(const MaterialParameter& parameter, double value);
 
-/// Why a material cannot be computed with (name, value found, values allowed), if it cannot.
+/// Says why a material cannot be computed with (name, value found, values allowed), if it cannot.
 std::optional<std::string> find_material_fault(const Material& material);
 
 }  // namespace holdfast::model

@@ -28,7 +28,7 @@ namespace holdfast::model {
 /// More modules than this are refused; indices and exact sums stay far from overflow.
 inline constexpr std::size_t kModuleCountMax = 20'000'000;
 
-/// How a module is held from outside the robot.
+/// The way in which a module is held from outside the robot.
 enum class Support : std::uint8_t {
   kNone,
   kGround,  ///< Touches the floor or an obstacle with at least one facet.
@@ -66,7 +66,7 @@ struct ModuleKind {
 /// The modules that Material describes, with the connectors of Eq. (17).
 ModuleKind default_kind(const Material& material, const base::Lattice& lattice);
 
-/// What single modules have that others do not.
+/// The mass of a single module that differs from that of its kind.
 struct OwnMass {
   base::Cell cell;  ///< Existing or planned.
   double mass_kg = 0;
@@ -100,7 +100,7 @@ struct CarriedMass {
   friend bool operator==(const CarriedMass&, const CarriedMass&) = default;
 };
 
-/// What a robot is made from, in any order.
+/// The specification that a robot is made from, in any order.
 struct RobotSpec {
   std::vector<base::Cell> existing = {};
   std::vector<base::Cell> planned = {};  ///< Attached in the planned step, all at once.
@@ -116,8 +116,8 @@ struct RobotSpec {
   Touch floor = {};
   std::vector<Obstacle> obstacles = {};
   std::optional<std::array<double, 3>> gravity_m_s2 = {};  ///< None: Material's, straight down.
-  /// Width of the facets that touch the environment; none: the face of a cube, half a pitch else. 0
-  /// is a point.
+  /// The width of the facets that touch the environment; if none is given, the face of a cube, else
+  /// half a pitch. 0 is a point.
   std::optional<double> foot_mm = {};
   std::vector<ModuleKind> kinds = {};    ///< Empty: default_kind() alone, which all modules are of.
   std::vector<OwnKind> own_kinds = {};   ///< All others are of kind 0.
@@ -135,23 +135,24 @@ class Robot {
   /// as many as the machine has cores.
   static base::Result<Robot> create(const RobotSpec& spec, int thread_count = 0);
 
-  /// What one of several processes has of a robot: the first own_count of the existing modules are
-  /// its own, the others copies of their neighbours, and none is planned. Facets and connections()
-  /// are those of its own modules alone, of connections the first module, so that all processes
-  /// together have each once. That the whole robot is connected and held is not checked here.
+  /// Makes the part of a robot that one of several processes has: the first own_count of the
+  /// existing modules are its own, the others copies of their neighbours, and none is planned.
+  /// Facets are those of its own modules alone, and so are connections() by their first module, so
+  /// that all processes together have each once. That the whole robot is connected and held is not
+  /// checked here.
   static base::Result<Robot> create_part(const RobotSpec& spec, RobotPart part,
                                          int thread_count = 1);
 
   /// The part of a robot that this is; all of it, unless create_part() made it.
   const RobotPart& part() const { return part_; }
 
-  /// Who else has a part of the robot. All of them ask the same in the same order.
+  /// The ranks that have parts of the robot. All of them call the same functions in the same order.
   host::Ranks& ranks() const { return part_.ranks; }
 
-  /// How many modules are no copies of other ranks'.
+  /// The number of modules that are no copies of other ranks'.
   std::size_t own_count() const { return part_.own_count; }
 
-  /// Existing modules first, then the planned ones, each in the order of the spec.
+  /// The existing modules, then the planned ones, each in the order of the spec.
   std::span<const Module> modules() const { return modules_; }
 
   /// The lattice in which the modules' cells and directions count.
@@ -169,12 +170,13 @@ class Robot {
   /// Every pair of modules that is connected once, planned modules included.
   Connections connections() const { return {connections_, connected_}; }
 
-  /// How many pairs of neighbours are not connected.
+  /// The number of pairs of neighbours that are not connected.
   std::size_t released_count() const { return released_count_; }
 
-  /// What touches the environment, by ascending module, then by ascending direction: the lower
-  /// sides of all modules on the support level, and all sides that an obstacle lies beside, of
-  /// modules that are not fixed. A side has one facet: an obstacle's, where there is a floor too.
+  /// The facets that touch the environment, by ascending module, then by ascending direction: the
+  /// lower sides of all modules on the support level, and all sides that an obstacle lies beside,
+  /// of modules that are not fixed. A side has one facet: an obstacle's, where there is a floor
+  /// too.
   std::span<const Facet> facets() const { return facets_; }
 
   const Material& material() const { return material_; }
@@ -182,13 +184,13 @@ class Robot {
   /// Half the width of every facet, mm; 0 is a point.
   double foot_half_width_mm() const { return foot_half_width_mm_; }
 
-  /// What acts on the modules from outside: their weight, what they carry, and payloads.
+  /// The loads that act on the modules from outside: their weight, what they carry, and payloads.
   const Loads& loads() const { return loads_; }
 
-  /// m/s^2, global frame.
+  /// The gravity in m/s^2, global frame.
   const std::array<double, 3>& gravity() const { return gravity_; }
 
-  /// kg.
+  /// The mass of a module in kg.
   double mass(std::size_t module) const { return masses_.empty() ? mass_ : masses_[module]; }
 
   /// Whether all modules weigh the same.
@@ -201,7 +203,7 @@ class Robot {
 
   std::span<const ModuleKind> kinds() const { return kinds_; }
 
-  /// When a connection breaks: the weaker of its two modules' connectors.
+  /// The law of a connection, which is the weaker of its two modules' connectors.
   const ConnectorLaw& connector(const Connection& connection) const {
     return connector(modules_[static_cast<std::size_t>(connection.a)].kind,
                      modules_[static_cast<std::size_t>(connection.b)].kind, connection.direction);
@@ -223,7 +225,7 @@ class Robot {
 
   bool has_floor() const { return has_floor_; }
 
-  /// Void without a floor.
+  /// The level of the support; void without a floor.
   std::int32_t support_z() const { return support_z_; }
 
   /// The floor's level, below which no module may be, as one rests on the floor; none where none
@@ -247,7 +249,7 @@ class Robot {
 
   std::size_t lattice_count() const { return static_cast<std::size_t>(lattice_.direction_count); }
 
-  /// Whether a spec says all of a robot, so that it must hang together.
+  /// Whether a spec says all of a robot, so that it must be connected.
   enum class Extent : std::uint8_t { kWhole, kPart };
 
   /// Takes everything from the spec. Returns the first fault.
@@ -295,7 +297,7 @@ class Robot {
   RobotPart part_;
 };
 
-/// How many modules the whole robot has, of all ranks.
+/// The number of modules of the whole robot, of all ranks.
 inline std::size_t whole_module_count(const Robot& robot) {
   return host::total(robot.ranks(), robot.own_count());
 }
@@ -321,14 +323,15 @@ class FloorRule {
 /// forces that a ratio is made of.
 double load_ratio_per_energy_norm(const Robot& robot);
 
-/// What of a robot goes beyond [Piranda 2021], that is cubes of one kind on a floor without slip
-/// under their own weight, for parts of the program that know nothing else; none if nothing does.
+/// Says what of a robot goes beyond [Piranda 2021], that is cubes of one kind on a floor without
+/// slip under their own weight, for parts of the program that know nothing else; none if nothing
+/// does.
 std::optional<std::string> find_beyond_paper(const Robot& robot);
 
 /// The two cells of a connection, given by its index; the first has the smaller coordinate.
 std::array<base::Cell, 2> ends(const Robot& robot, std::size_t connection);
 
-/// How messages and reports name a cell, "(2,1,2)", and a connection, "(2,1,2)-(3,1,2)".
+/// Names a cell, "(2,1,2)", or a connection, "(2,1,2)-(3,1,2)", in messages and reports.
 std::string text(const base::Cell& cell);
 std::string ends_text(const Robot& robot, std::size_t connection);
 

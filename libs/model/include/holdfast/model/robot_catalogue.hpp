@@ -11,7 +11,7 @@
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/model/material.hpp"
 
-/// What is known of robots that have been built, each figure with where it comes from.
+/// Lists what is known of robots that have been built, each figure with its source.
 namespace holdfast::model {
 
 enum class Certainty : std::uint8_t {
@@ -22,7 +22,7 @@ enum class Certainty : std::uint8_t {
   kNotFound,     ///< Not published as far as we know: whoever uses the robot says it.
 };
 
-/// "published", "project page", "second hand", "derived", "not found".
+/// Returns "published", "project page", "second hand", "derived" or "not found".
 const char* name(Certainty certainty);
 
 /// A number of a robot. A range is entered with the end that holds less.
@@ -40,14 +40,14 @@ struct CatalogueRobot {
   std::string_view note;  ///< What to know before the figures are used; may be empty.
   std::vector<RobotFigure> figures;
 
-  /// None if the robot has no such figure, or its value was not found.
+  /// The value of a figure; none if the robot has no such figure, or its value was not found.
   std::optional<double> value(std::string_view key) const;
 };
 
 /// All robots, in the order in which lists show them.
 std::span<const CatalogueRobot> robot_catalogue();
 
-/// nullptr if there is no robot of that name.
+/// The robot of that name; nullptr if there is none.
 const CatalogueRobot* find_robot(std::string_view name);
 
 /// The parameters of a material that every robot of the catalogue has a figure for, found or not.

@@ -10,8 +10,8 @@
 
 namespace holdfast::model {
 
-/// What of a robot this process has: its first modules are its own, the others copies of those
-/// neighbours that other ranks own. Of a robot in one piece all are its own.
+/// The part of a robot that this process has: its first modules are its own, the others copies of
+/// those neighbours that other ranks own. If the robot is in one piece, all are its own.
 struct RobotPart {
   std::reference_wrapper<host::Ranks> ranks = host::single_rank();
   std::size_t own_count = 0;            ///< Modules.

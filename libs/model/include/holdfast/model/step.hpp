@@ -8,7 +8,7 @@
 #include "holdfast/base/cell.hpp"
 #include "holdfast/model/robot.hpp"
 
-/// What happens to a robot in one step of a reconfiguration ([Piranda 2021] Sec. II-B).
+/// Describes what happens to a robot in one step of a reconfiguration ([Piranda 2021] Sec. II-B).
 namespace holdfast::model {
 
 /// A module that goes from one cell to another.

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <deque>
 
-/// Future events, earliest first; events of the same time leave in the order they came.
+/// A queue of future events, earliest first; events of the same time leave in the order they came.
 namespace holdfast::sim {
 
 struct QueuedEvent {
@@ -34,7 +34,7 @@ class EventQueue {
 
   std::size_t size() const { return size_; }
 
-  /// Time of the first event; the queue must not be empty.
+  /// The time of the first event; the queue must not be empty.
   std::uint64_t next_time();
 
   /// Removes the first event; the queue must not be empty.
@@ -48,7 +48,7 @@ class EventQueue {
   static constexpr int kDigitBits = 8;
   static constexpr int kLevelCount = 8;
   static constexpr std::size_t kSlotCount = std::size_t{1} << kDigitBits;
-  /// So many events make a chunk one kibibyte.
+  /// The number of events that make a chunk one kibibyte.
   static constexpr std::size_t kChunkEvents = 63;
 
   struct Chunk {

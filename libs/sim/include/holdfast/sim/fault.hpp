@@ -10,7 +10,7 @@
 #include "holdfast/base/cell.hpp"
 #include "holdfast/base/lattice.hpp"
 
-/// What goes wrong, or is changed by hand, while a robot computes; as data.
+/// Describes what goes wrong, or is changed by hand, while a robot computes; as data.
 namespace holdfast::sim {
 
 /// Something that happens to one module at a time. Faults of the same time happen in the order of
@@ -35,7 +35,7 @@ struct Fault {
   base::Direction face = base::Direction::kPlusX;  ///< Of what concerns a link.
 };
 
-/// Does it happen to a link, not to a module?
+/// Whether a fault happens to a link, not to a module.
 constexpr bool is_of_link(Fault::Kind kind) {
   return kind == Fault::Kind::kCut || kind == Fault::Kind::kMend || kind == Fault::Kind::kUnplug ||
          kind == Fault::Kind::kPlug;
@@ -64,7 +64,7 @@ struct Announcement {
   bool is_withdrawal = false;
 };
 
-/// "kill", "cut", "detach", "attach", "reset", "mend", "unplug", "plug".
+/// Returns "kill", "cut", "detach", "attach", "reset", "mend", "unplug" or "plug".
 std::string_view name(Fault::Kind kind);
 
 }  // namespace holdfast::sim

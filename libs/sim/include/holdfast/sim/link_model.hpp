@@ -10,7 +10,7 @@
 
 #include "holdfast/agent/link.hpp"
 
-/// What the lines between modules do to packets, and how modules wait for them, as data.
+/// Describes what the lines between modules do to packets, and how modules wait for them.
 ///
 /// A link is two lines, one for each direction. A packet of B bytes occupies its line for
 ///   packet_time + ceil((B + overhead_bytes) bits_per_byte ticks_per_second / bit_rate)
@@ -67,13 +67,13 @@ LinkModel catoms();
 /// of rounds of a synchronous network. Packets of 228 bytes, version 2's, hold any message.
 LinkModel unit();
 
-/// "v1", "v2", "catoms" or "unit".
+/// The model that is called "v1", "v2", "catoms" or "unit".
 std::optional<LinkModel> find_link_model(std::string_view name);
 
-/// Why a model cannot be simulated (name, value found, values allowed), if it cannot.
+/// Says why a model cannot be simulated (name, value found, values allowed), if it cannot.
 std::optional<std::string> find_link_fault(const LinkModel& model);
 
-/// How long a packet occupies its line.
+/// The time for which a packet occupies its line.
 Time line_time(const LinkModel& model, int packet_bytes);
 
 /// The waiting times of the agents: as the model says, but long enough for an acknowledgement to

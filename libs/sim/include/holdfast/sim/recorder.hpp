@@ -12,10 +12,10 @@
 /// on to the trace. For whoever runs agents, in this simulation or in another one.
 namespace holdfast::sim {
 
-/// Does the packet carry messages?
+/// Whether the packet carries messages.
 bool is_data(std::span<const std::uint8_t> packet);
 
-/// What is known of an agent.
+/// The state of an agent as far as it is recorded.
 struct Seen {
   std::uint16_t epoch = 0;
   agent::Phase phase = agent::Phase::kDiscovery;
@@ -73,7 +73,7 @@ class Recorder {
   std::uint64_t phase_rounds_ = 0;  ///< At that time.
 };
 
-/// What a module has come to in the end.
+/// The state of a module in the end.
 struct ModuleOutcome {
   const agent::Agent& agent;
   bool takes_part = true;  ///< Is it attached and not silenced?

@@ -22,17 +22,17 @@
 /// trace hash on every platform.
 namespace holdfast::sim {
 
-/// What a module sends is changed before it is on its line: `packet` holds `size` bytes and has
-/// room for those of the largest packet. Returns the new size.
+/// A function that changes what a module sends before it is on its line: `packet` holds `size`
+/// bytes and has room for those of the largest packet. Returns the new size.
 using Tamper = std::function<int(Time now, std::int32_t module, base::Direction face,
                                  std::span<std::uint8_t> packet, int size)>;
 
 struct SimulationOptions {
   LinkModel link = unit();
   std::uint64_t seed = 1;  ///< Of noise, clocks and session numbers.
-  /// See agent::Setup. None: elimination on a level floor under weight alone, from which a robot
-  /// goes on at its next change, else fronts. Whoever is no robot of cubes on a floor is lent
-  /// memory anyway, then that for fronts too.
+  /// The method of agent::Setup; if there is none, elimination on a level floor under weight alone,
+  /// from which a robot goes on at its next change, and fronts elsewhere. A robot that is not of
+  /// cubes on a floor is lent memory anyway, and then that for fronts, too.
   std::optional<agent::Method> method = {};
   std::uint8_t degree_max = 200;  ///< See agent::Setup.
   bool only_one_sweep = false;    ///< See agent::Setup: modules with little flash.
@@ -55,28 +55,28 @@ struct SimulationOptions {
   const model::Robot* step_end = nullptr;
   Time time_max = agent::kNever;  ///< Later events do not happen.
   std::uint64_t event_count_max = ~std::uint64_t{0};
-  /// How long after the last verdict the modules' watching over it is simulated as well.
+  /// The time after the last verdict for which the modules' watching over it is simulated as well.
   Time watch_for = 0;
   std::int32_t anchor = 0;  ///< The module that knows its cell.
-  /// Is told of the robot's planned modules, and of the step, before it starts.
+  /// The module that is told of the robot's planned modules, and of the step, before it starts.
   std::int32_t plan_module = 0;
   bool tells_planned = true;   ///< False: nobody is told of them but by `announcements`.
   TraceSink* trace = nullptr;  ///< Not owned; outlives the simulation.
   Tamper tamper = {};          ///< Called for every packet, if there is one: faulty modules.
 };
 
-/// Why a simulation cannot be made (what, value found, values allowed), if it cannot.
+/// Says why a simulation cannot be made (what, value found, values allowed), if it cannot.
 std::optional<std::string> find_options_fault(const model::Robot& robot,
                                               const SimulationOptions& options);
 
-/// Why modules that are lent no memory, as all that run elsewhere than in Simulation, do not know
-/// enough of a robot; none if it is cubes on a floor under their weight.
+/// Says why modules that are lent no memory, as all that run elsewhere than in Simulation, do not
+/// know enough of a robot; none if it is cubes on a floor under their weight.
 std::optional<std::string> find_floor_fault(const model::Robot& robot);
 
-/// What the agents of a robot have in common, prepared.
+/// Makes the setup that the agents of a robot have in common.
 agent::Setup make_setup(const model::Robot& robot, const SimulationOptions& options);
 
-/// Is the module there at the start? Not if it is put on before it is taken off.
+/// Whether the module is there at the start: not if it is put on before it is taken off.
 bool starts_attached(const SimulationOptions& options, std::int32_t module);
 
 class Engine;
@@ -98,18 +98,18 @@ class Simulation {
   /// modules, which counts.
   bool run_for(std::uint64_t event_count);
 
-  /// It happens now, to a simulation that has come to its end, without faults and `watch_for`; it
-  /// can be run again then.
+  /// Makes a fault happen now, in a simulation without faults and `watch_for` that has come to its
+  /// end; it can be run again then.
   void happen(const Fault& fault);
   void happen(const Announcement& announcement);
 
-  /// So far.
+  /// The result so far.
   SimulationResult result() const;
 
   /// The agent of an existing module.
   const agent::Agent& agent(std::int32_t module) const;
 
-  /// Is the module attached and not silenced?
+  /// Whether the module is attached and not silenced.
   bool is_alive(std::int32_t module) const;
 
   std::int32_t agent_count() const;

@@ -14,22 +14,22 @@ using agent::Time;
 
 inline constexpr std::size_t kPhaseCount = static_cast<std::size_t>(agent::Phase::kDone) + 1;
 
-/// "discovery", "coordinates", ...
+/// Returns "discovery", "coordinates" and so on.
 std::string_view name(agent::Phase phase);
 
-/// Are the answers the same in every respect, their load ratios to the last bit?
+/// Whether the answers are the same in every respect, their load ratios to the last bit.
 bool is_same(const agent::Answer& a, const agent::Answer& b);
 
 struct PhaseStatistics {
   std::uint64_t packets = 0;  ///< By the phase of the sender when it hands out the packet.
   std::uint64_t bytes = 0;
-  /// While this was the phase of the newest epoch: the largest that any module had reached, until
-  /// the root led back to an earlier one.
+  /// The time in which this was the phase of the newest epoch: the largest phase that any module
+  /// had reached, until the root led back to an earlier one.
   Time time = 0;
   std::uint64_t rounds = 0;  ///< By how much the rounds grew meanwhile.
 };
 
-/// What a simulation has come to. Bytes are those of packets, without the line's framing.
+/// The result of a simulation. Bytes are those of packets, without the line's framing.
 struct SimulationResult {
   Time time = 0;          ///< Of the last event that a module handled.
   Time verdict_time = 0;  ///< When the last module came to know its verdict.
@@ -55,7 +55,7 @@ struct SimulationResult {
   std::uint16_t epoch = 0;  ///< The newest.
 
   std::size_t bytes_per_module = sizeof(agent::Agent);
-  /// FNV-1a over time, receiver, face, kind and bytes of every packet delivered, in order.
+  /// The FNV-1a sum over time, receiver, face, kind and bytes of every packet delivered, in order.
   std::uint64_t trace_hash = 0;
 };
 

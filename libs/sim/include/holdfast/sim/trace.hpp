@@ -25,12 +25,12 @@ struct PacketTrace {
   std::span<const std::uint8_t> bytes = {};
 };
 
-/// Is called in the order of time. Modules are indices in the robot.
+/// Receives what happens in a simulation, in the order of time. Modules are indices in the robot.
 class TraceSink {
  public:
   virtual ~TraceSink() = default;
 
-  /// Once, before everything else. Both arguments outlive the calls that follow.
+  /// Begins the trace, once, before everything else. Both arguments outlive the calls that follow.
   virtual void begin(const model::Robot& /*robot*/, const LinkModel& /*link*/) {}
 
   virtual void packet_sent(const PacketTrace& /*packet*/, Time /*line_time*/) {}
@@ -52,7 +52,7 @@ class TraceSink {
 
   virtual void announced(const Announcement& /*announcement*/) {}
 
-  /// Once, when the simulation is over; not if it is given up before.
+  /// Ends the trace, once, when the simulation is over; not if it is given up before.
   virtual void end(const SimulationResult& /*result*/) {}
 };
 
@@ -61,9 +61,10 @@ struct PerfettoOptions {
   bool has_packets = true;
 };
 
-/// Chrome trace-event JSON, for ui.perfetto.dev: a thread for every module, its phases as slices,
-/// packets as arrows, lost packets, verdicts and faults as instants. Time in microseconds; ticks
-/// where they have no length. The text is complete JSON after end() or the destructor.
+/// Writes Chrome trace-event JSON, for ui.perfetto.dev: a thread for every module, its phases as
+/// slices, packets as arrows, lost packets, verdicts and faults as instants. Time is in
+/// microseconds; in ticks where they have no length. The text is complete JSON after end() or the
+/// destructor.
 class PerfettoTrace : public TraceSink {
  public:
   explicit PerfettoTrace(std::ostream& out, const PerfettoOptions& options = {});
@@ -84,14 +85,14 @@ class PerfettoTrace : public TraceSink {
   std::unique_ptr<Writer> writer_;
 };
 
-/// What a module says of its answer, in words: "knows the verdict: safe (...), load ratio ...".
+/// Describes a module's answer in words: "knows the verdict: safe (...), load ratio ...".
 std::string describe(const agent::Answer& answer, const base::Lattice& lattice = base::kCubic);
 
 struct StoryOptions {
   bool tells_every_module = true;  ///< False: phases and waves only when the first module is there.
 };
 
-/// Text for people: one line for each notable happening, totals at the end. Not packets.
+/// Writes a text for people: one line for each notable happening but packets, totals at the end.
 class StoryTrace : public TraceSink {
  public:
   explicit StoryTrace(std::ostream& out, const StoryOptions& options = {});

@@ -8,16 +8,16 @@
 
 namespace holdfast::sim {
 
-/// When an agent wants to wake, where calls cannot be taken back: those of which the agent has
-/// thought better are recognised when they come.
+/// Knows when an agent wants to wake, where calls cannot be taken back: a call that the agent no
+/// longer wants is recognised when it comes.
 struct WakeTimer {
   agent::Time wake_at = agent::kNever;
-  /// When up to two calls come that are asked for, earlier first. One at another time is out of
-  /// date.
+  /// The times of up to two calls that are asked for, earlier first. A call at another time is out
+  /// of date.
   agent::Time call_at = agent::kNever;
   agent::Time call_later_at = agent::kNever;
 
-  /// When to be called, too; kNever if the calls that were asked for will do.
+  /// Returns when to be called besides; kNever if the calls that were asked for suffice.
   agent::Time arm(agent::Time now) {
     if (wake_at >= call_at) {
       return agent::kNever;

@@ -28,15 +28,15 @@ Float narrowed(Double a);
 Double from_unsigned(std::uint32_t a);
 Double from_signed(std::int32_t a);
 
-/// Towards zero; not for numbers beyond 32 bits.
+/// Rounds towards zero; not for numbers beyond 32 bits.
 std::int32_t to_signed(Double a);
 
 inline constexpr Double kSign = Double{1} << 63U;
 
 inline Double subtract(Double a, Double b) { return add(a, b ^ kSign); }
 
-/// Binary32 by way of binary64: with 53 >= 2 x 24 + 2 digits the second rounding does no harm
-/// [Figueroa 1995].
+/// Adds in binary32 by way of binary64: with 53 >= 2 x 24 + 2 digits the second rounding does no
+/// harm [Figueroa 1995].
 inline Float add_float(Float a, Float b) { return narrowed(add(widened(a), widened(b))); }
 
 inline Float multiply_float(Float a, Float b) { return narrowed(multiply(widened(a), widened(b))); }

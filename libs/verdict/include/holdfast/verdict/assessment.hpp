@@ -13,7 +13,7 @@
 #include "holdfast/verdict/reason.hpp"
 #include "holdfast/verdict/rigid_body.hpp"
 
-/// Will it hold? The verdict on a robot with its planned step, and everything it rests on.
+/// Gives the verdict on a robot with its planned step, and everything that it rests on.
 namespace holdfast::verdict {
 
 enum class Verdict : std::uint8_t {
@@ -31,14 +31,14 @@ enum class ContactModel : std::uint8_t {
   kUnilateral,   ///< Eqs. (6)-(8), exact; used where (9)-(12) have no usable answer.
 };
 
-/// What decides whether a robot keeps standing where it is.
+/// The rule that decides whether a robot keeps standing where it is.
 enum class StabilityRule : std::uint8_t {
   kHeld,           ///< A fixed module or a bonded facet holds it.
   kPolygon,        ///< All facets lie in a level plane: the support polygon.
   kContactForces,  ///< Supports anywhere: contact forces of a rigid body, and the model.
 };
 
-/// What one connection carries, in its middle (Eqs. 16-17).
+/// The load of one connection, in its middle (Eqs. 16-17).
 struct ConnectionResult {
   /// The largest ratio of its limits, see model::ConnectorLaw; Eq. (17) is (2 bending / a + axial)
   /// / Fmax. Breaks at 1 or more.
@@ -49,8 +49,8 @@ struct ConnectionResult {
   double torsion_nmm = 0;  ///< Not part of Eq. (17).
 };
 
-/// How far connections open at the edge of the facet beyond what contacts of power and data bear:
-/// no verdict, but a warning.
+/// The gaps by which connections open at the edge of the facet beyond what contacts of power and
+/// data tolerate: no verdict, but a warning.
 struct OpenGaps {
   std::size_t count = 0;  ///< Connections beyond their limit.
   std::size_t worst = 0;  ///< The index of the one with the largest share of its limit.
@@ -66,26 +66,27 @@ struct Lean {
   double margin_mm = 0;  ///< Its least distance to an edge's line then, inside, less its error.
 };
 
-/// Bending that takes more than this share of the margin is worth a warning.
+/// The share of the margin above which bending is worth a warning.
 inline constexpr double kLeanShare = 0.1;
 
-/// What all ranks' connections together are, of a robot of which this is a part.
+/// The loads of all ranks' connections together, of a robot of which this is a part.
 struct WholeLoads {
   std::size_t connection_count = 0;
   std::size_t broken_count = 0;
   std::array<base::Cell, 2> worst = {};  ///< The ends of the one with the largest load ratio.
 };
 
-/// What the largest load ratio lies between: apart by the solver's error, with a margin, or by feet
-/// whose hold on the ground is ambiguous. A verdict needs both on the same side of 1.
+/// The range in which the largest load ratio lies: its ends are apart by the solver's error, with a
+/// margin, or by feet whose hold on the ground is ambiguous. A verdict needs both on the same side
+/// of 1.
 struct LoadRange {
   double low = 0;
   double high = 0;
 };
 
-/// What the paper's contact law, where it has more than one solution, or where open facets may
-/// pull, says about the largest load ratio, and what the exact law says beside it. A verdict needs
-/// all of them on one side of 1.
+/// The largest load ratios of several solutions: of the paper's contact law, where it has more than
+/// one or where open facets may pull, and of the exact law beside it. A verdict needs all of them
+/// on one side of 1.
 struct SeveralSolutions {
   std::size_t found_count = 0;          ///< At least so many; 1 where open facets may pull.
   LoadRange regularised;                ///< Over all solutions found.
@@ -104,8 +105,8 @@ struct Slip {
 struct ModelStability {
   bool is_stable = false;
   bool is_settled = false;  ///< False: no consistent contact state was found, is_stable is void.
-  /// Another solution of the paper's contact law, or the exact law's, has states in which the robot
-  /// falls.
+  /// Whether another solution of the paper's contact law, or the exact law's, has states in which
+  /// the robot falls.
   bool falls_otherwise = false;
   std::optional<Slip> slip_otherwise = {};  ///< By the exact law, asked beside the paper's.
 };
@@ -122,15 +123,16 @@ struct Assessment {
   /// if the rigid body holds and the model does not say otherwise. Bonded supports hold always.
   bool is_stable = false;
 
-  /// None for a robot that is whole. Of a part `connections` and `broken` are this rank's, and
-  /// `worst` is an index at the rank that has it; all else is of the whole robot.
+  /// The loads of the whole robot if this is a part of it; none for a robot that is whole.
+  /// `connections` and `broken` of a part are this rank's, and `worst` is an index at the rank that
+  /// has it; all else is of the whole robot.
   std::optional<WholeLoads> whole;
 
   /// One result per connection of the robot; empty if no equilibrium was found, or sought: a large
   /// robot that topples is known to topple by the rigid body. Not meaningful if unstable.
   std::vector<ConnectionResult> connections;
   std::optional<double> load_ratio_max;  ///< None without connections or if one is not a number.
-  /// Index of the connection with load_ratio_max; none if that is below kLoadRatioTie, which is
+  /// The index of the connection with load_ratio_max; none if that is below kLoadRatioTie, which is
   /// rounding or compression, or below the width of load_ratio_range, its own uncertainty: no
   /// connection is known to be pulled apart.
   std::optional<std::size_t> worst;
@@ -164,14 +166,15 @@ inline bool breaks(double load_ratio) { return load_ratio >= 1 - kLoadRatioTie; 
 /// is pull down. Then the exact law is asked as well.
 bool has_pulling_facets(const model::Robot& robot, const Assessment& assessment);
 
-/// Whether it stays where it is, as far as that is known: none where the verdict hangs on it.
+/// Whether the robot stays where it is, as far as that is known: none where the verdict depends on
+/// it.
 inline std::optional<bool> known_stability(const Assessment& assessment) {
   const bool is_open = !assessment.is_stable && assessment.verdict == Verdict::kUndecided;
   return is_open ? std::nullopt : std::optional(assessment.is_stable);
 }
 
-/// What the rigid body says of a robot, and nothing else: no verdict, no reasons. On supports
-/// anywhere the tilt and the friction needed only if asked for.
+/// Assesses a robot by the rigid body alone: no verdict, no reasons. With supports anywhere, tilt
+/// and friction are found only if `has_figures` asks for them.
 Assessment assess_rigidly(const model::Robot& robot, bool has_figures = true);
 
 /// Seeks the equilibrium of a robot and says what follows from it.
@@ -182,10 +185,10 @@ Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& o
 Assessment assess_equilibrium(const model::Robot& robot, solver::Equilibrium equilibrium,
                               int thread_count = 0);
 
-/// "safe", "overload", "unstable", "undecided".
+/// Returns "safe", "overload", "unstable" or "undecided".
 const char* name(Verdict verdict);
 
-/// "none", "bonded", "regularised", "unilateral".
+/// Returns "none", "bonded", "regularised" or "unilateral".
 const char* name(ContactModel model);
 
 }  // namespace holdfast::verdict

@@ -15,12 +15,12 @@
 #include "holdfast/model/robot.hpp"
 #include "holdfast/verdict/assessment.hpp"
 
-/// What connections carry, Eqs. (16)-(17), for very many of them.
+/// Computes the loads of very many connections, Eqs. (16)-(17).
 namespace holdfast::verdict {
 
-/// What mechanics::middle_force() and load_ratio() compute for one direction, to the last bit, with
-/// the beam's frame and constants worked out beforehand. For a load ratio that leaves three
-/// differences: of the displacements along the beam, and of the rotations across.
+/// Computes what mechanics::middle_force() and load_ratio() compute for one direction, to the last
+/// bit, with the beam's frame and constants worked out beforehand. That leaves three differences
+/// for a load ratio: of the displacements along the beam, and of the rotations across.
 class ConnectionLaw {
  public:
   using Vec = base::Vec6<double>;
@@ -58,7 +58,8 @@ class ConnectionLaw {
     return term.factor * (p[term.index] + q[term.index]);
   }
 
-  /// The larger of both, a NaN if one is. Which one it is nobody can foresee, so no branch asks.
+  /// The larger bending moment of the two axes, a NaN if one is. Nobody can foresee which one is
+  /// larger, so no branch asks.
   double bending(const Vec& p, const Vec& q) const {
     const double x = std::abs(difference(bend_x_, p, q));
     const double y = std::abs(difference(bend_y_, p, q));
@@ -81,7 +82,7 @@ class ConnectionLaw {
   mechanics::Connector<double> connector_;
 };
 
-/// What the connections of a robot carry, each by its own law. Keeps a reference to the robot.
+/// The loads of a robot's connections, each by its own law. Keeps a reference to the robot.
 class ConnectionLaws {
  public:
   using Vec = base::Vec6<double>;
@@ -112,7 +113,7 @@ class ConnectionLaws {
     return model::limit_ratios(robot_.connector(pair), force_of(result));
   }
 
-  /// How far the edge of the facet opens, mm; not below 0. The modules are rigid beside their
+  /// The gap at the edge of the facet, mm; not below 0. The modules are rigid beside their
   /// connection, whose compliance is that of the beam: N / axial stiffness, and the angles by which
   /// the beam bends times the lever. At a corner both angles add up if the law is square.
   double gap_mm(const model::Connection& pair, const Vecs& high, const Vecs& low) const;
@@ -131,7 +132,7 @@ class ConnectionLaws {
 
   ConnectionResult general_result(const model::Connection& pair, const Vec& p, const Vec& q) const;
 
-  /// How the first module moves as seen by the second, where both move far more than their beam
+  /// The motion of the first module as seen by the second, where both move far more than their beam
   /// bends: in 106 bits until what is common to both is gone.
   Vec relative_motion(const model::Connection& pair, const Vecs& high, const Vecs& low) const;
 

@@ -6,7 +6,7 @@
 
 namespace holdfast::verdict {
 
-/// How far displacements move the centre of mass, in plan: sums over masses.
+/// The displacement of the centre of mass, in plan: sums over masses.
 struct MovedMass {
   double mass_kg = 0;
   double x_kg_mm = 0;  ///< Of mass times displacement along x,

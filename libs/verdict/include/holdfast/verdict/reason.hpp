@@ -12,9 +12,10 @@
 
 namespace holdfast::verdict {
 
-/// Why a verdict is what it is. Behind a colon stand the `numbers` of a reason with that code. Of
+/// The reason for a verdict. Behind a colon stand the `numbers` of a reason with that code. For
 /// several solutions they are: how many were found, the lowest and highest of their largest load
-/// ratios, and those of the exact law's, of which the lowest is above the highest if it has none.
+/// ratios, and the lowest and highest of the exact law's, where the lowest is above the highest if
+/// it has none.
 enum class ReasonCode : std::uint8_t {
   kNothingToSpare,     ///< The mass lies over the edge: x, y of its first end, x, y of its second.
   kTopples,            ///< The same four, and by how much the mass lies beyond the edge, mm.
@@ -66,8 +67,8 @@ struct Reason {
 
   ReasonCode code = ReasonCode::kNoEquilibrium;
   std::array<double, kNumberMax> numbers{};
-  /// What another part of the program says, in its own words: the checker of certificates, or the
-  /// robot. Empty for all other codes.
+  /// The words of another part of the program: of the checker of certificates, or of the robot.
+  /// Empty for all other codes.
   std::string quoted = {};
   /// The cells that indices mean, where these are another rank's; else empty.
   std::vector<base::Cell> cells = {};

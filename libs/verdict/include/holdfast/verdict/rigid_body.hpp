@@ -24,7 +24,7 @@ struct PlanPoint {
 };
 
 struct RigidBody {
-  /// More than zero to spare, or held by a fixed module or a bonded facet.
+  /// Whether there is more than zero to spare, or a fixed module or a bonded facet holds the robot.
   bool is_stable = false;
   /// The smallest signed distance from the centre of mass to the line of an edge of the support
   /// polygon, positive inside: the lever with which the weight holds the robot down, or tips it.
@@ -38,7 +38,7 @@ struct RigidBody {
   std::vector<PlanPoint> polygon;
 };
 
-/// Below this share of a pitch a margin that was computed in double counts as zero.
+/// The share of a pitch below which a margin that was computed in double counts as zero.
 inline constexpr double kMarginTie = 1e-9;
 
 /// Whether all facets lie in one level plane and can lift, and only weight acts, straight down:
@@ -49,9 +49,9 @@ bool is_on_flat_floor(const model::Robot& robot);
 /// centre of mass, no polygon and no margin, and `is_stable` if something holds it fast.
 RigidBody assess_rigid_body(const model::Robot& robot);
 
-/// What assess_rigid_body() says of a robot with one more module, again and again, without looking
-/// at the robot again: to the same digits if its mass is exact, else but for rounding. For robots
-/// without facets or on a flat floor.
+/// Finds what assess_rigid_body() says of a robot with one more module, again and again, without
+/// looking at the robot again: to the same digits if its mass is exact, else but for rounding. It
+/// serves robots without facets or on a flat floor.
 class GrowingRigidBody {
  public:
   /// The new module weighs `mass_kg`.
