@@ -149,6 +149,22 @@ inline void add_reading(CLI::App& command, io::ReadOptions& options) {
         const auto found = io::find_lattice(name);
         return found ? std::string() : found.error().message;
       });
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--set",
+          [&options](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) {
+              options.settings.push_back(io::find_setting(text).value());
+            }
+          },
+          "Give a number of the material another value than the file does, such as "
+          "strength_lateral_n=12")
+      ->type_name("KEY=NUMBER")
+      ->allow_extra_args(false)
+      ->check([](const std::string& text) {
+        const auto found = io::find_setting(text);
+        return found ? std::string() : found.error().message;
+      });
   command.add_flag(
       "--allow-unknown", options.allow_unknown,
       "Ignore keys of holdfast JSON that are unknown, with a note; without it they are "

@@ -106,7 +106,9 @@ base::Result<EmulatedRun> emulate(const Structure& structure, const CheckResult&
 
 void write_report_json(std::ostream& out, const Structure& structure, const CheckResult& exact,
                        const EmulatedRun& run, const io::ReportOptions& options) {
-  io::write_report_json(out, entry_of(structure, exact), options, [&](io::JsonStream& json) {
+  io::ReportEntry entry = entry_of(structure, exact);
+  entry.command = "emulate";
+  io::write_report_json(out, entry, options, [&](io::JsonStream& json) {
     json.key("distributed");
     json.begin_object();
     write_distributed(json, run.run);

@@ -162,7 +162,9 @@ void write_distributed(io::JsonStream& json, const DistributedRun& run) {
 
 void write_report_json(std::ostream& out, const Structure& structure, const CheckResult& exact,
                        const DistributedRun& run, const io::ReportOptions& options) {
-  io::write_report_json(out, entry_of(structure, exact), options, [&](io::JsonStream& json) {
+  io::ReportEntry entry = entry_of(structure, exact);
+  entry.command = "simulate";
+  io::write_report_json(out, entry, options, [&](io::JsonStream& json) {
     json.key("distributed");
     json.begin_object();
     write_distributed(json, run);

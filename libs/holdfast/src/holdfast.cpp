@@ -10,10 +10,10 @@
 #include <thread>
 
 #include "holdfast/host/team.hpp"
+#include "holdfast/io/report_head.hpp"
 #include "holdfast/limit/robot.hpp"
 #include "holdfast/model/families.hpp"
 #include "report_entry.hpp"
-#include "version.hpp"
 
 namespace holdfast {
 
@@ -35,7 +35,7 @@ void add_notes(std::string& text, std::span<const std::string> notes, const Text
   }
 }
 
-std::string_view version() { return kVersion; }
+std::string_view version() { return io::program_version(); }
 
 base::Result<Structure> make_structure(io::Document document, std::string_view name,
                                        int thread_count) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "holdfast/io/report_head.hpp"
 #include "holdfast/trial.hpp"
 
 namespace holdfast {
@@ -54,6 +55,7 @@ void write_next_json(std::ostream& out, const Structure& structure, const NextRe
   std::string text;
   io::JsonStream json(text);
   json.begin_object();
+  io::write_report_head(json, "next");
   write_next_members(json, structure, result, options);
   json.end_object();
   out << text << "\n";

@@ -9,6 +9,7 @@
 #include <ostream>
 #include <utility>
 
+#include "holdfast/io/report_head.hpp"
 #include "report_entry.hpp"
 
 namespace holdfast {
@@ -254,6 +255,7 @@ void write_simulated_stages_json(std::ostream& out, const StepsFile& file,
     }
   }
   json.begin_object();
+  io::write_report_head(json, "simulate");
   json.member("name", file.name);
   json.member("verdict", verdict::name(stages.verdict()));
   io::write_stage_id(json, "first_unsafe", stages.first_unsafe());

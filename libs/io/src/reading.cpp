@@ -11,6 +11,7 @@
 #include "holdfast/io/lattice_names.hpp"
 #include "holdfast/model/robot_catalogue.hpp"
 #include "robot_defaults.hpp"
+#include "settings.hpp"
 #include "text_input.hpp"
 #include "vocabulary.hpp"
 
@@ -151,7 +152,14 @@ void Reading::take_robot(const std::string& named, const ReadOptions& options, c
   document.material = first_material(name);
 }
 
-void Reading::complete_material(const Where& where) {
+void Reading::complete_material(const ReadOptions& options, const Where& where) {
+  for (const Setting& setting : options.settings) {
+    if (auto fault = take_setting(setting, document)) {
+      fail(base::bad_input(*std::move(fault), where()));
+    }
+    warn(fmt::format("{} is set to {} by an option", setting.key, setting.value),
+         [] { return std::string(); });
+  }
   const std::vector<std::string> missing = missing_keys(document.material);
   if (!missing.empty()) {
     fail({base::ErrorCode::kBadInput,

@@ -69,9 +69,10 @@ class Reading {
   /// Before anything of the material, and take_lattice().
   void take_robot(const std::string& named, const ReadOptions& options, const Where& where);
 
-  /// Fails if the material lacks a figure that is not published for the robot, else fills in the
-  /// section; to be called when the whole material is read.
-  void complete_material(const Where& where);
+  /// Takes the settings of the options, then fails if the material lacks a figure that is not
+  /// published for the robot, else fills in the section; to be called when the whole material is
+  /// read.
+  void complete_material(const ReadOptions& options, const Where& where);
 
   /// The lattice of the document: `named`, what the file says, or what the options say; a failure
   /// if these differ, or if there is no lattice of that name. False if neither says anything.

@@ -96,8 +96,9 @@ inline constexpr auto kAllModuleKeys = joined(kModuleKeys, kOwnParameterKeys);
 
 /// Parameters of connections that only version 2 has, of the material and of kinds of modules.
 inline constexpr std::string_view kBendingKey = "bending";
+inline constexpr std::string_view kStrengthKey = "strength_n";  ///< Instead of kClassStrengthKeys.
 inline constexpr auto kConnectorKeys = std::to_array<std::string_view>(
-    {"strength_n", "lever_mm", "shear_strength_n", "torsion_strength_nmm", "friction",
+    {kStrengthKey, "lever_mm", "shear_strength_n", "torsion_strength_nmm", "friction",
      "torsion_radius_mm", "gap_limit_mm", kBendingKey});
 
 /// The strengths of Table I, by base::ConnectorClass, and the keys of a value for each class.

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "checked_robot.hpp"
+#include "holdfast/io/report_head.hpp"
 #include "holdfast/model/families.hpp"
 #include "seeds.hpp"
 
@@ -176,6 +177,23 @@ TEST(Report, shows_loads_that_are_not_numbers_first) {
   EXPECT_EQ(text.find("1.2500  ("), std::string::npos) << text;
   const Json report = Json::parse(write_report_json(chain.entry()));
   EXPECT_TRUE(report["connections"][20]["load_ratio"].is_null());
+}
+
+TEST(Report, says_first_what_it_is) {
+  Checked chain(long_chain());
+  ReportEntry entry = chain.entry();
+  entry.command = "emulate";
+  const auto report = nlohmann::ordered_json::parse(write_report_json(entry));
+  auto member = report.begin();
+  EXPECT_EQ(member.key(), "format");
+  EXPECT_EQ(*member++, "holdfast-report");
+  EXPECT_EQ(member.key(), "version");
+  EXPECT_EQ(*member++, 1);
+  EXPECT_EQ(member.key(), "report");
+  EXPECT_EQ(*member++, "emulate");
+  EXPECT_EQ(member.key(), "program");
+  EXPECT_EQ(*member++, "holdfast " + std::string(program_version()));
+  EXPECT_EQ(member.key(), "name");
 }
 
 TEST(Report, of_a_failure_is_an_object_with_its_place) {

@@ -58,7 +58,7 @@ base::Result<ReadDocument> JsonReader::read(const Json& root, const ReadOptions&
     for (const auto& [key, value] : members) {
       read_member(key, value, top.at(key));
     }
-    reading_.complete_material([&] {
+    reading_.complete_material(options, [&] {
       const auto has = [&](const char* key) { return root.contains(key); };
       return has("material") ? top.at("material").pointer()
              : has("robot")  ? top.at("robot").pointer()

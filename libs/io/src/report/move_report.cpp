@@ -10,6 +10,7 @@
 
 #include "holdfast/host/text.hpp"
 #include "holdfast/io/beside_one.hpp"
+#include "holdfast/io/report_head.hpp"
 #include "json/json_text.hpp"
 #include "json/json_values.hpp"
 
@@ -156,19 +157,19 @@ base::Result<plan::MoveTask> move_task(const Document& start, const Document& ta
 std::string move_json(const MoveReport& report) {
   const plan::MovePlan& plan = report.plan;
   const StageCount stages = count_stages(plan);
-  return lines('{',
-               {member("result", json_text(std::string(plan::name(plan.outcome)))),
-                member("steps", fmt::format("{}", plan.steps.size())),
-                member("steps_min", fmt::format("{}", plan.length_min)),
-                member("states", fmt::format("{}", plan.state_count)),
-                member("stages", fmt::format("{}", stages.all)),
-                member("stages_safe", fmt::format("{}", stages.safe)),
-                member("load_ratio_max", json_text(load_ratio_of(plan))),
-                member("margin_min_mm", json_text(margin_of(plan))),
-                member("seconds", json_text(report.seconds)),
-                member("certificate", certificate_text(plan))},
-               '}', 0) +
-         "\n";
+  Items items = report_head("move");
+  const Items found = {member("result", json_text(std::string(plan::name(plan.outcome)))),
+                       member("steps", fmt::format("{}", plan.steps.size())),
+                       member("steps_min", fmt::format("{}", plan.length_min)),
+                       member("states", fmt::format("{}", plan.state_count)),
+                       member("stages", fmt::format("{}", stages.all)),
+                       member("stages_safe", fmt::format("{}", stages.safe)),
+                       member("load_ratio_max", json_text(load_ratio_of(plan))),
+                       member("margin_min_mm", json_text(margin_of(plan))),
+                       member("seconds", json_text(report.seconds)),
+                       member("certificate", certificate_text(plan))};
+  items.insert(items.end(), found.begin(), found.end());
+  return lines('{', items, '}', 0) + "\n";
 }
 
 std::string move_text(const MoveReport& report) {

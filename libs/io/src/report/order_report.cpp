@@ -11,6 +11,7 @@
 #include "holdfast/host/text.hpp"
 #include "holdfast/io/beside_one.hpp"
 #include "holdfast/io/order_certificate.hpp"
+#include "holdfast/io/report_head.hpp"
 #include "json/json_text.hpp"
 
 namespace holdfast::io {
@@ -147,19 +148,20 @@ std::string order_json(const OrderReport& report) {
     certificate = write_order_certificate(report.target, *report.result.certificate);
     certificate.pop_back();
   }
-  return lines('{',
-               {member("result", json_text(std::string(name(order.outcome)))),
-                member("steps", fmt::format("{}", order.steps.size())),
-                member("states", fmt::format("{}", order.state_count)),
-                member("load_ratio_max", json_text(report.result.load_ratio_max)),
-                member("load_ratio_bound", json_text(report.result.load_ratio_bound)),
-                member("margin_min_mm", json_text(report.result.margin_min_mm)),
-                member("seconds", json_text(report.seconds)),
-                member("start", json_text(cells_of(report, order.start.elements()))),
-                member("way", array(way_items(report), 2)), member("help", help_text(report)),
-                member("certificate", certificate)},
-               '}', 0) +
-         "\n";
+  Items items = report_head("order");
+  const Items found = {member("result", json_text(std::string(name(order.outcome)))),
+                       member("steps", fmt::format("{}", order.steps.size())),
+                       member("states", fmt::format("{}", order.state_count)),
+                       member("load_ratio_max", json_text(report.result.load_ratio_max)),
+                       member("load_ratio_bound", json_text(report.result.load_ratio_bound)),
+                       member("margin_min_mm", json_text(report.result.margin_min_mm)),
+                       member("seconds", json_text(report.seconds)),
+                       member("start", json_text(cells_of(report, order.start.elements()))),
+                       member("way", array(way_items(report), 2)),
+                       member("help", help_text(report)),
+                       member("certificate", certificate)};
+  items.insert(items.end(), found.begin(), found.end());
+  return lines('{', items, '}', 0) + "\n";
 }
 
 std::string order_text(const OrderReport& report) {

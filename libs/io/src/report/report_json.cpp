@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "connection_list.hpp"
 #include "holdfast/io/report.hpp"
+#include "holdfast/io/report_head.hpp"
 #include "holdfast/verdict/connection_law.hpp"
 #include "ordered_blocks.hpp"
 #include "report/limit_report.hpp"
@@ -263,6 +263,7 @@ class Writer {
   void write_head() {
     const model::Robot& robot = *entry_.robot;
     const verdict::Assessment& assessment = *entry_.assessment;
+    write_report_head(json_, entry_.command);
     json_.member("name", entry_.name);
     json_.member("verdict", verdict::name(assessment.verdict));
     write_reasons();
@@ -410,9 +411,15 @@ std::string write_report_json(const ReportEntry& entry) {
 }
 
 std::string write_error_json(const base::Error& error, std::string_view name) {
-  const nlohmann::ordered_json report = {
-      {"name", name}, {"error", error.message}, {"where", error.where}};
-  return report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+  std::string text;
+  JsonStream json(text);
+  json.begin_object();
+  write_report_head(json, "check");
+  json.member("name", name);
+  json.member("error", std::string_view(error.message));
+  json.member("where", std::string_view(error.where));
+  json.end_object();
+  return text;
 }
 
 }  // namespace holdfast::io

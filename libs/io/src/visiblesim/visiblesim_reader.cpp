@@ -247,7 +247,7 @@ void read_roots(XmlReading& reading, const pugi::xml_node& tree, const ReadOptio
   reading.take_robot(own.attribute("robot").value(), options, where);
   read_parameters(reading, parameters);
   read_world(reading, world, options);
-  reading.complete_material(where);
+  reading.complete_material(options, where);
   expect_possible_numbers(reading, parameters, own);
 }
 

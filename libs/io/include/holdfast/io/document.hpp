@@ -95,6 +95,18 @@ inline constexpr int kNestingMax = 64;
 /// is not white space: '<' for XML, '{' or '[' for JSON; an error for anything else.
 base::Result<Format> detect_format(std::string_view text);
 
+/// A number of the material that replaces what a file or its robot says.
+struct Setting {
+  std::string key;  ///< Of model::kMaterialParameters, or of a connector, such as shear_strength_n.
+  double value = 0;
+
+  friend bool operator==(const Setting&, const Setting&) = default;
+};
+
+/// Reads "strength_lateral_n=12", or the same after "material.". Errors: no such key, with the one
+/// that is probably meant; no number, or one that the key does not allow.
+base::Result<Setting> find_setting(std::string_view text);
+
 /// The values that hold where a file says nothing, and are an error where it says otherwise; and
 /// the limits of what a file may hold.
 struct ReadOptions {
@@ -103,6 +115,7 @@ struct ReadOptions {
   /// Whether a key of holdfast JSON that nobody knows is ignored with a note. If not, it is an
   /// error, as what it says would be lost, but for one that begins with `x-`, which is for others.
   bool allow_unknown = false;
+  std::vector<Setting> settings = {};  ///< The last one of a key counts. Warnings name them.
 };
 
 /// Reads any of the formats. Error::where is "line 12" or a JSON pointer such as "/modules/3".

@@ -41,6 +41,7 @@ struct WholeRobot {
 
 /// One checked structure, for a report. Views must outlive the call.
 struct ReportEntry {
+  std::string_view command = "check";  ///< What the report is of, as write_report_head() says it.
   std::string_view name;
   const model::Robot* robot = nullptr;
   const verdict::Assessment* assessment = nullptr;

@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "settings.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "holdfast/io/near_miss.hpp"
+#include "holdfast/io/report.hpp"
+#include "vocabulary.hpp"
+
+namespace holdfast::io {
+namespace {
+
+constexpr std::string_view kMaterialPrefix = "material.";
+
+const model::MaterialParameter* find_parameter(std::string_view key) {
+  const auto found =
+      std::ranges::find(model::kMaterialParameters, key, &model::MaterialParameter::key);
+  return found == model::kMaterialParameters.end() ? nullptr : &*found;
+}
+
+bool is_connector_key(std::string_view key) {
+  return key != kBendingKey && std::ranges::find(kConnectorKeys, key) != kConnectorKeys.end();
+}
+
+bool is_class_strength(std::string_view key) {
+  return std::ranges::find(kClassStrengthKeys, key) != kClassStrengthKeys.end();
+}
+
+std::optional<double> number_of(std::string_view text) {
+  double value = 0;
+  const char* const end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, value);
+  const bool is_number = read.ec == std::errc{} && read.ptr == end && std::isfinite(value);
+  return is_number ? std::optional(value) : std::nullopt;
+}
+
+base::Error unknown_key(std::string_view key) {
+  std::vector<std::string_view> names(kConnectorKeys.begin(), kConnectorKeys.end());
+  for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
+    names.push_back(parameter.key);
+  }
+  const auto near = near_miss(key, names);
+  return base::bad_input(fmt::format("a material has no '{}'{}", one_line(key),
+                                     near ? fmt::format("; did you mean '{}'?", *near)
+                                          : fmt::format("; it has {}", fmt::join(names, ", "))));
+}
+
+}  // namespace
+
+base::Result<Setting> find_setting(std::string_view text) {
+  const std::size_t mark = text.find('=');
+  const auto value =
+      mark == std::string_view::npos ? std::nullopt : number_of(text.substr(mark + 1));
+  if (!value) {
+    return base::bad_input("expected KEY=NUMBER, such as strength_lateral_n=12");
+  }
+  std::string_view key = text.substr(0, mark);
+  key.remove_prefix(key.starts_with(kMaterialPrefix) ? kMaterialPrefix.size() : 0);
+  if (const model::MaterialParameter* const parameter = find_parameter(key)) {
+    if (auto fault = model::find_fault(*parameter, *value)) {
+      return base::bad_input(*std::move(fault));
+    }
+  } else if (!is_connector_key(key)) {
+    return unknown_key(key);
+  } else if (*value < kPositiveMin) {
+    return base::bad_input(
+        fmt::format("{}: expected a number of {} and more, found {}", key, kPositiveMin, *value));
+  }
+  return Setting{.key = std::string(key), .value = *value};
+}
+
+std::optional<std::string> take_setting(const Setting& setting, Document& document) {
+  auto& parameters = document.extension.connectors.parameters;
+  const auto is_key = [](std::string_view key) {
+    return [key](const ConnectorParameter& one) { return one.key == key; };
+  };
+  if (is_class_strength(setting.key) && std::ranges::any_of(parameters, is_key(kStrengthKey))) {
+    return fmt::format("{} cannot be set, as the file gives {} for all connections", setting.key,
+                       kStrengthKey);
+  }
+  if (const model::MaterialParameter* const parameter = find_parameter(setting.key)) {
+    document.material.*parameter->value = setting.value;
+    return std::nullopt;
+  }
+  std::erase_if(parameters, is_key(setting.key));
+  if (setting.key == kStrengthKey) {
+    document.material.strength_vertical_n = setting.value;
+    document.material.strength_lateral_n = setting.value;
+  } else {
+    parameters.push_back({setting.key, Spread::kAll, {setting.value}});
+  }
+  return std::nullopt;
+}
+
+}  // namespace holdfast::io
