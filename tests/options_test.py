@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The holdfast authors
 # SPDX-License-Identifier: Apache-2.0
-"""options_test.py CACHE ARCHITECTURE   the options in CMake's cache are those in the document's
+"""options_test.py CACHE DOCUMENT   the options in CMake's cache are those in the document's
 table "CMake options", and the other way round but for what the table says is Emscripten's."""
 import pathlib
 import re

@@ -22,7 +22,7 @@ SECTIONS = [
     ('How to', 'One task each.',
      ['install', 'python', 'page', 'visiblesim', 'firmware', 'cluster', 'supports']),
     ('Reference', 'What there is, complete.',
-     ['commands', 'formats', 'robots', 'python_api', 'cpp_api', 'wire', 'glossary']),
+     ['commands', 'formats', 'robots', 'python_api', 'cpp_api', 'wire', 'building', 'glossary']),
     ('Explanation', 'Why it works.',
      ['theory', 'general', 'limit', 'elastic_and_limit', 'proof', 'solver', 'plan', 'next', 'order',
       'move', 'printed_frames', 'distributed', 'one_sweep']),
