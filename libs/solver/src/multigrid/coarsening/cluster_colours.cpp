@@ -198,10 +198,10 @@ class Colours {
   /// First fit along the curve. On cubes that is mostly a chessboard, and whether it is threads can
   /// tell; else clusters are coloured one by one.
   void colour_whole(std::vector<std::uint8_t>& colours) const {
-    if (fine_.is_cubic && count_ > 0) {
+    if (fine_.is_along_axes && count_ > 0) {
       paint_chessboard(parity(0), colours);
     }
-    if (!fine_.is_cubic || !are_first_fit(colours)) {
+    if (!fine_.is_along_axes || !are_first_fit(colours)) {
       colour_own({}, colours);
     }
   }

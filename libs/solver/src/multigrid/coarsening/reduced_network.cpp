@@ -7,7 +7,6 @@
 #include <atomic>
 #include <bit>
 #include <map>
-#include <numeric>
 #include <span>
 #include <utility>
 
@@ -24,14 +23,6 @@ using host::Team;
 using model::Robot;
 using model::Support;
 
-/// Whether a robot is of cubes that touch nothing but a floor.
-bool is_on_floor_only(const Robot& robot) {
-  return robot.lattice() == base::kCubic &&
-         std::ranges::all_of(robot.facets(), [](const model::Facet& facet) {
-           return facet.direction == base::down(base::kCubic);
-         });
-}
-
 constexpr std::size_t kColourMax = base::Lattice::kDirectionCountMax + 1;
 
 /// Builds a network of the modules that an elimination leaves.
@@ -42,11 +33,10 @@ class Builder {
         team_(team),
         elimination_(eliminate(robot, team)),
         order_(morton_order(robot, elimination_.is_gone, team)),
-        is_cubic_(robot.lattice() == base::kCubic),
         direction_count_(at(robot.lattice().direction_count)) {
     network_.lattice = robot.lattice();
+    network_.is_along_axes = robot.lattice() == base::kCubic;
     network_.ranks = robot.ranks();
-    network_.is_cubic = host::all(network_.ranks, is_on_floor_only(robot));
     network_.node_count = order_.modules.size();
     network_.own_count = static_cast<std::size_t>(std::ranges::count_if(
         order_.modules, [&](const auto& item) { return at(item.module) < robot.own_count(); }));
@@ -99,7 +89,7 @@ class Builder {
   /// The colour of a module whose neighbours have taken some: the first, which makes two for cubes,
   /// else the lattice's own if no long beam has brought it there, of which there are four.
   std::uint8_t free_colour(std::int32_t module, unsigned taken) const {
-    if (!is_cubic_) {
+    if (!network_.is_along_axes) {
       const std::uint8_t own = lattice_colour(module);
       if ((taken >> own & 1U) == 0) {
         return own;
@@ -157,7 +147,8 @@ class Builder {
   /// that the first module along the curve has the first.
   void guess_colours(std::vector<std::uint8_t>& colour) const {
     const std::uint8_t first = first_colour();
-    const std::uint8_t change = is_cubic_ && first != kNoColour ? first : std::uint8_t{0};
+    const std::uint8_t change =
+        network_.is_along_axes && first != kNoColour ? first : std::uint8_t{0};
     team_.share(0, network_.own_count, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const std::int32_t module = order_.modules[i].module;
@@ -188,8 +179,8 @@ class Builder {
   /// First fit along the curve. On cubes that is mostly a chessboard, and whether it is threads can
   /// tell; else modules are coloured one by one.
   void colour_whole(std::vector<std::uint8_t>& colour) const {
-    std::atomic<bool> is_guessed = is_cubic_;
-    if (is_cubic_) {
+    std::atomic<bool> is_guessed = network_.is_along_axes;
+    if (is_guessed) {
       guess_colours(colour);
       team_.share(0, network_.own_count, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end && is_guessed.load(std::memory_order_relaxed); ++i) {
@@ -312,22 +303,6 @@ class Builder {
     order_ = {};
   }
 
-  void connect() {
-    if (network_.is_cubic) {
-      network_.cubic.other.resize(network_.node_count);
-      kinds_.resize(network_.node_count);
-      team_.share(0, network_.node_count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t node = begin; node < end; ++node) {
-          connect_cube(node);
-        }
-      });
-    } else if (network_.has_long_beams) {
-      connect_rows();
-    } else {
-      connect_by_direction();
-    }
-  }
-
   /// Calls f(direction, length, far node) for every beam of a node.
   template <class F>
   void for_beams(std::size_t node, const F& f) const {
@@ -341,68 +316,30 @@ class Builder {
     }
   }
 
-  void connect_cube(std::size_t node) {
-    Kind kind{};
-    network_.cubic.other[node].fill(static_cast<std::int32_t>(network_.node_count));
-    for_beams(node, [&](std::size_t direction, std::uint8_t length, std::int32_t other) {
-      network_.cubic.other[node][direction] = other;
-      kind[direction] = length;
-    });
-    kinds_[node] = kind;
-  }
-
-  void connect_by_direction() {
+  void connect() {
     const std::size_t count = network_.node_count;
     LatticeBeams& beams = network_.beams;
-    beams.by_direction.assign(direction_count_ * count, static_cast<std::int32_t>(count));
-    std::vector<LatticeBeams::Lengths> lengths(count);
+    beams.other.assign(direction_count_ * count, static_cast<std::int32_t>(count));
+    std::vector<BeamLengths> lengths(count);
     team_.share(0, count, [&](std::size_t begin, std::size_t end) {
       for (std::size_t node = begin; node < end; ++node) {
         for_beams(node, [&](std::size_t direction, std::uint8_t length, std::int32_t other) {
-          beams.by_direction[direction_count_ * node + direction] = other;
+          beams.other[direction_count_ * node + direction] = other;
           lengths[node][direction] = at(other) < count ? length : std::uint8_t{0};
         });
       }
     });
-    const auto own_rows =
-        std::span(beams.by_direction).first(direction_count_ * network_.own_count);
+    const auto own_rows = std::span(beams.other).first(direction_count_ * network_.own_count);
     beams.end_count = own_rows.size() - static_cast<std::size_t>(std::ranges::count(
                                             own_rows, static_cast<std::int32_t>(count)));
     find_kinds(lengths);
   }
 
-  void connect_rows() {
-    const std::size_t count = network_.node_count;
-    LatticeBeams& beams = network_.beams;
-    beams.start.assign(count + 1, 0);
-    std::vector<LatticeBeams::Lengths> lengths(count);
-    std::vector<std::vector<std::int32_t>> others((count + Team::kChunk - 1) / Team::kChunk);
-    team_.share(0, count, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t node = begin; node < end; ++node) {
-        std::vector<std::int32_t>& part = others[node / Team::kChunk];
-        for_beams(node, [&](std::size_t direction, std::uint8_t length, std::int32_t other) {
-          if (at(other) < count) {
-            part.push_back(other);
-            lengths[node][direction] = length;
-            ++beams.start[node + 1];
-          }
-        });
-      }
-    });
-    std::partial_sum(beams.start.begin(), beams.start.end(), beams.start.begin());
-    beams.other.reserve(at(beams.start[count]));
-    for (const std::vector<std::int32_t>& part : others) {
-      beams.other.insert(beams.other.end(), part.begin(), part.end());
-    }
-    beams.end_count = at(beams.start[network_.own_count]);
-    find_kinds(lengths);
-  }
-
   /// Nodes with the same beams share them.
-  void find_kinds(const std::vector<LatticeBeams::Lengths>& lengths) {
+  void find_kinds(const std::vector<BeamLengths>& lengths) {
     LatticeBeams& beams = network_.beams;
     beams.kind.resize(lengths.size());
-    std::map<LatticeBeams::Lengths, std::uint32_t> known;
+    std::map<BeamLengths, std::uint32_t> known;
     for (std::size_t node = 0; node < lengths.size(); ++node) {
       if (node > 0 && lengths[node] == lengths[node - 1]) {
         beams.kind[node] = beams.kind[node - 1];
@@ -457,13 +394,9 @@ class Builder {
                                        .direction = static_cast<std::uint8_t>(direction),
                                        .length = 1,
                                        .facet = static_cast<std::int32_t>(i)});
-      if (network_.is_cubic) {
-        kinds_[at(node)][at(direction)] = 1;
-      }
     }
     std::ranges::sort(network_.ground_beams, {},
                       [](const GroundBeam& beam) { return std::pair(beam.node, beam.direction); });
-    network_.cubic.kind = Kinds(kinds_);
   }
 
   static constexpr std::uint8_t kNoColour = 255;
@@ -472,10 +405,8 @@ class Builder {
   Team& team_;
   Elimination elimination_;
   MortonOrder order_;
-  bool is_cubic_;  ///< The lattice.
   std::size_t direction_count_;
   std::vector<std::int32_t> node_of_;
-  std::vector<Kind> kinds_;  ///< By node, of cubes.
   ReducedNetwork network_;
 };
 
