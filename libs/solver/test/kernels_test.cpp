@@ -126,8 +126,8 @@ TEST(Kernels, sweeps_have_the_same_bits_on_every_machine) {
   const auto r = random_vector<float>(rng);
   auto z = random_vector<float>(rng);
   auto here = z;
-  sweeps().relax_cluster(clusters.view(), r.data(), z.data(), kEvery);
-  kSweeps.relax_cluster(clusters.view(), r.data(), here.data(), kEvery);
+  sweeps().relax(clusters.view(), r.data(), z.data(), kEvery);
+  kSweeps.relax(clusters.view(), r.data(), here.data(), kEvery);
   EXPECT_TRUE(is_same(z, here));
   EXPECT_FALSE(is_same(z, r));
   sweeps().relax_first(clusters.type.data(), clusters.inverse.data(), r.data(), z.data(), kEvery);
@@ -211,10 +211,10 @@ TEST(Kernels, products_and_transfers_have_the_same_bits_on_every_machine) {
   std::vector<Six<float>> coarse(clusters.cluster_count() + 1);
   auto coarse_here = coarse;
   const Range every = {0, clusters.cluster_count()};
-  chosen.restrict_cluster(clusters.view(), clusters.transfer(), kCount, r.data(), z.data(),
-                          coarse.data(), every);
-  plain.restrict_cluster(clusters.view(), clusters.transfer(), kCount, r.data(), z.data(),
-                         coarse_here.data(), every);
+  chosen.restrict_to(clusters.view(), clusters.transfer(), kCount, r.data(), z.data(),
+                     coarse.data(), every);
+  plain.restrict_to(clusters.view(), clusters.transfer(), kCount, r.data(), z.data(),
+                    coarse_here.data(), every);
   EXPECT_TRUE(is_same(coarse, coarse_here));
   chosen.prolong(clusters.transfer(), coarse.data(), q.data(), kEvery);
   plain.prolong(clusters.transfer(), coarse.data(), here.data(), kEvery);
@@ -238,8 +238,8 @@ TEST(Kernels, restriction_is_the_transpose_of_prolongation) {
   std::vector<Six<float>> gathered(c.size());
   auto moved = zero;
   const Kernels<float>& all = kernels<float>();
-  all.restrict_cluster(clusters.view(), clusters.transfer(), kCount, f.data(), zero.data(),
-                       gathered.data(), {0, clusters.cluster_count()});
+  all.restrict_to(clusters.view(), clusters.transfer(), kCount, f.data(), zero.data(),
+                  gathered.data(), {0, clusters.cluster_count()});
   all.prolong(clusters.transfer(), c.data(), moved.data(), kEvery);
   const double work = all.dot_same(f.data(), moved.data(), kEvery);
   const double coarse_work = all.dot_same(gathered.data(), c.data(), {0, clusters.cluster_count()});

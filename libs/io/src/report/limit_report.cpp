@@ -15,7 +15,7 @@ namespace {
 using Outcome = limit::LimitLoad::Outcome;
 
 /// Joints that give way are listed in the text up to here.
-constexpr std::size_t kListedCount = 3;
+constexpr std::size_t kListedYields = 3;
 
 /// A factor of rounding.
 constexpr double kNoLoad = 1e-9;
@@ -127,12 +127,12 @@ std::string limit_text(const ReportEntry& entry) {
           : fmt::format("  limit load  not found: {} times these loads or more, in {:.2f} s\n",
                         beside_one(load.low, 4), entry.limit_seconds);
   const std::vector<limit::Yield>& yields = load.mechanism.yields;
-  for (std::size_t i = 0; i < std::min(yields.size(), kListedCount); ++i) {
+  for (std::size_t i = 0; i < std::min(yields.size(), kListedYields); ++i) {
     text += fmt::format("              then {} {}\n", place_text(*entry.robot, yields[i]),
                         model::name(yields[i].limit));
   }
-  if (yields.size() > kListedCount) {
-    text += fmt::format("              and {} more give way\n", yields.size() - kListedCount);
+  if (yields.size() > kListedYields) {
+    text += fmt::format("              and {} more give way\n", yields.size() - kListedYields);
   }
   return text;
 }

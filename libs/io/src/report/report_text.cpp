@@ -17,7 +17,7 @@ namespace holdfast::io {
 namespace {
 
 /// The number of most loaded connections that are listed.
-constexpr std::size_t kListedCount = 5;
+constexpr std::size_t kListedConnections = 5;
 
 using Out = std::back_insert_iterator<std::string>;
 
@@ -80,7 +80,7 @@ void write_loads(Out out, const model::Robot& robot, const verdict::Assessment& 
                    is_known ? "" : "known to be ");
     return;
   }
-  const std::vector<std::size_t> order = most_loaded(assessment, kListedCount);
+  const std::vector<std::size_t> order = most_loaded(assessment, kListedConnections);
   for (std::size_t i = 0; i < order.size(); ++i) {
     const verdict::ConnectionResult& result = assessment.connections[order[i]];
     fmt::format_to(out, "  {}  {:>7}  {:<24} {:>9} N axial {:>9} N mm bending\n",

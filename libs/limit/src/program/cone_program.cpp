@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "algebra/wrench.hpp"
+#include "program/wrench.hpp"
 
 namespace holdfast::limit {
 namespace {
@@ -201,8 +201,6 @@ ConeProgram::ConeProgram(const Structure& structure, const Part& part)
       loads[static_cast<Eigen::Index>(6 * group + i)] =
           part.loads[group][i] / (i < 3 ? force_n : force_n * length);
     }
-    const Vector3& centre = part.centres[group];
-    places.emplace_back(centre[0], centre[1], centre[2]);
   }
 }
 

@@ -6,11 +6,12 @@
 #include <span>
 #include <vector>
 
-#include "algebra/block_cholesky.hpp"
 #include "holdfast/limit/limit_load.hpp"
 #include "program/cone.hpp"
 
 namespace holdfast::limit {
+
+using Block = Eigen::Matrix<double, 6, 6>;
 
 /// What of a structure a program is about: bodies in groups that move as one, the joints whose
 /// forces are unknown, and what grows with the factor on each group.
@@ -67,7 +68,6 @@ struct ConeProgram {
 
   std::vector<JointPart> joints;
   std::vector<Cone> cones;
-  std::vector<Eigen::Vector3d> places;  ///< Of groups.
   Eigen::VectorXd loads;
   Eigen::VectorXd h;
   double factor_max = kFactorMax;

@@ -13,10 +13,10 @@ namespace {
 using Eigen::VectorXd;
 
 /// A factor of rounding.
-constexpr double kNothing = 1e-10;
+constexpr double kNoFactor = 1e-10;
 
 bool is_closed(const ProgramBounds& bounds, double tolerance) {
-  return bounds.high - bounds.low <= std::max(tolerance * bounds.high, kNothing);
+  return bounds.high - bounds.low <= std::max(tolerance * bounds.high, kNoFactor);
 }
 
 /// The embedding:  A'y + G'z + c tau = 0,  A x = 0,  s + G x = h tau,  kappa + c'x + h'z = 0
@@ -42,7 +42,7 @@ class InteriorPoint {
         break;
       }
     }
-    if (bounds_.low > bounds_.high + std::max(tolerance * bounds_.high, kNothing)) {
+    if (bounds_.low > bounds_.high + std::max(tolerance * bounds_.high, kNoFactor)) {
       return {.iteration_count = bounds_.iteration_count};  // Rounding has spoilt them.
     }
     bounds_.low = std::min(bounds_.low, bounds_.high);

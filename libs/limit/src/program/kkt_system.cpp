@@ -21,10 +21,10 @@ constexpr double kLeastStiffness = 1e-12;
 constexpr double kBoundScale = 1 / kFactorMax;
 
 /// Pairs of groups that joints couple, and which of them each joint is in.
-std::vector<BlockCholesky::Edge> edges_of(const ConeProgram& program,
-                                          std::vector<std::size_t>& edge_of_joint) {
-  std::map<BlockCholesky::Edge, std::size_t> found;
-  std::vector<BlockCholesky::Edge> edges;
+std::vector<solver::Edge> edges_of(const ConeProgram& program,
+                                   std::vector<std::size_t>& edge_of_joint) {
+  std::map<std::pair<int, int>, std::size_t> found;
+  std::vector<solver::Edge> edges;
   for (const JointPart& joint : program.joints) {
     if (joint.a == Part::kNone || joint.b == Part::kNone) {
       edge_of_joint.push_back(0);
@@ -32,11 +32,23 @@ std::vector<BlockCholesky::Edge> edges_of(const ConeProgram& program,
     }
     const auto [at, is_new] = found.try_emplace(std::minmax(joint.a, joint.b), edges.size());
     if (is_new) {
-      edges.push_back(at->first);
+      edges.push_back({at->first.first, at->first.second});
     }
     edge_of_joint.push_back(at->second);
   }
   return edges;
+}
+
+solver::BlockLu stiffness_of(const ConeProgram& program, std::span<const solver::Edge> edges) {
+  return {static_cast<std::size_t>(program.loads.size() / 6), edges,
+          std::numeric_limits<std::size_t>::max(), solver::Symmetry::kPositive};
+}
+
+/// A matrix as the factorization takes it.
+base::Mat6<double> packed(const Block& block) {
+  base::Mat6<double> result;
+  Eigen::Map<Block>(result.values.data()) = block;
+  return result;
 }
 
 }  // namespace
@@ -47,7 +59,8 @@ KktSystem::KktSystem(const ConeProgram& program, double softness, int thread_cou
       cones_(program.cones),
       h_(program.h.size() + 1),
       edges_(edges_of(program, edge_of_joint_)),
-      cholesky_(program.places, edges_, thread_count) {
+      stiffness_(stiffness_of(program, edges_)),
+      thread_count_(thread_count) {
   h_ << program.h, program.factor_max * kBoundScale;
   cones_.push_back({.row = program.h.size(), .size = 1});
   centre_.resize(h_.size());
@@ -112,7 +125,19 @@ bool KktSystem::factor(const VectorXd& s, const VectorXd& z) {
   }
   lambda_ = scaled(z);
   make_compliances();
-  std::vector<Block> diagonal(program_.places.size(), Block::Zero());
+  if (!factor_stiffness()) {
+    return false;
+  }
+  loads_solved_ = program_.loads;
+  solve_stiffness(loads_solved_);
+  const double eta = scalings_.back().times(ConePart::Ones(1))[0];
+  border_ = kBoundScale * kBoundScale / (eta * eta) + program_.loads.dot(loads_solved_);
+  return true;
+}
+
+/// The stiffness by group, of joints as compliant as make_compliances() says.
+bool KktSystem::factor_stiffness() {
+  std::vector<Block> diagonal(stiffness_.node_count(), Block::Zero());
   std::vector<Block> coupling(edges_.size(), Block::Zero());
   for (std::size_t j = 0; j < program_.joints.size(); ++j) {
     const JointPart& joint = program_.joints[j];
@@ -136,12 +161,24 @@ bool KktSystem::factor(const VectorXd& s, const VectorXd& z) {
   for (Block& block : diagonal) {
     block.diagonal().array() += kLeastStiffness;
   }
-  cholesky_.factor(diagonal, coupling);
-  loads_solved_ = program_.loads;
-  cholesky_.solve(loads_solved_);
-  const double eta = scalings_.back().times(ConePart::Ones(1))[0];
-  border_ = kBoundScale * kBoundScale / (eta * eta) + program_.loads.dot(loads_solved_);
-  return true;
+  for (std::size_t i = 0; i < diagonal.size(); ++i) {
+    stiffness_.set_diagonal(i, packed(diagonal[i]));
+  }
+  for (std::size_t i = 0; i < coupling.size(); ++i) {
+    stiffness_.set_edge(i, packed(coupling[i]));
+  }
+  return stiffness_.factor(thread_count_);
+}
+
+void KktSystem::solve_stiffness(VectorXd& x) {
+  std::vector<base::Vec6<double>> by_group(stiffness_.node_count());
+  for (std::size_t i = 0; i < by_group.size(); ++i) {
+    std::copy_n(x.data() + 6 * i, 6, by_group[i].begin());
+  }
+  stiffness_.solve(by_group);
+  for (std::size_t i = 0; i < by_group.size(); ++i) {
+    std::copy_n(by_group[i].begin(), 6, x.data() + 6 * i);
+  }
 }
 
 /// Of every joint: R with R'R the inverse of G' W^-2 G, by the rotations of a matrix whose rows are
@@ -190,7 +227,7 @@ void KktSystem::improve(KktVector& solution, const KktVector& rest) {
       g.segment<6>(6 * joint.b) += joint.on_b * moved;
     }
   }
-  cholesky_.solve(g);
+  solve_stiffness(g);
   const double factor = (force[force.size() - 1] - program_.loads.dot(g)) / border_;
   g += factor * loads_solved_;
   for (Index j = 0; j < joint_count(); ++j) {
@@ -251,7 +288,8 @@ KktVector KktSystem::solve(const KktVector& right_side) {
 
 double factor_work(const ConeProgram& program) {
   std::vector<std::size_t> edge_of_joint;
-  return BlockCholesky(program.places, edges_of(program, edge_of_joint), 1).work();
+  const std::vector<solver::Edge> edges = edges_of(program, edge_of_joint);
+  return static_cast<double>(stiffness_of(program, edges).factor_product_count());
 }
 
 VectorXd KktSystem::scaled(const VectorXd& u) const {

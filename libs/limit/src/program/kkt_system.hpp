@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "holdfast/solver/block_lu.hpp"
 #include "program/cone.hpp"
 #include "program/cone_program.hpp"
 
@@ -60,6 +61,8 @@ class KktSystem {
   Eigen::Index joint_count() const { return static_cast<Eigen::Index>(program_.joints.size()); }
 
   void make_compliances();
+  bool factor_stiffness();
+  void solve_stiffness(Eigen::VectorXd& x);
   void improve(KktVector& solution, const KktVector& rest);
 
   const ConeProgram& program_;
@@ -68,8 +71,9 @@ class KktSystem {
   Eigen::VectorXd h_;
   Eigen::VectorXd centre_;
   std::vector<std::size_t> edge_of_joint_;
-  std::vector<BlockCholesky::Edge> edges_;
-  BlockCholesky cholesky_;
+  std::vector<solver::Edge> edges_;
+  solver::BlockLu stiffness_;
+  int thread_count_;
   std::vector<Scaling> scalings_;  ///< By cone.
   Eigen::VectorXd lambda_;
   std::vector<Block> roots_;  ///< By joint: its compliance is inverse to root' root.
@@ -77,7 +81,7 @@ class KktSystem {
   double border_ = 0;
 };
 
-/// Multiplications that factoring a program's matrix takes, about.
+/// Products of two blocks that factoring a program's matrix takes.
 double factor_work(const ConeProgram& program);
 
 }  // namespace holdfast::limit

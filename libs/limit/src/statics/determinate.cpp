@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "algebra/wrench.hpp"
 #include "program/sets.hpp"
+#include "program/wrench.hpp"
 
 namespace holdfast::limit {
 namespace {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "algebra/wrench.hpp"
 #include "program/cone_program.hpp"
 #include "program/sets.hpp"
+#include "program/wrench.hpp"
 
 namespace holdfast::limit {
 namespace {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "algebra/wrench.hpp"
 #include "holdfast/model/lattice_beam.hpp"
 #include "holdfast/model/mass.hpp"
+#include "program/wrench.hpp"
 
 namespace holdfast::limit {
 namespace {

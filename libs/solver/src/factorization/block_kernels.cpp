@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "factorization/block_kernels.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -61,6 +62,33 @@ bool invert(const base::Mat6<double>& block, base::Mat6<double>& inverse) {
     }
   }
   return true;
+}
+
+base::Mat6<double> inverse_root(const base::Mat6<double>& block,
+                                const base::Mat6<double>& first_value) {
+  constexpr double kNothing = 1e-15;
+  base::Mat6<double> root;
+  base::Mat6<double> inverse;
+  for (int k = 0; k < 6; ++k) {
+    for (int row = k; row < 6; ++row) {
+      double rest = block.at(row, k);
+      for (int j = 0; j < k; ++j) {
+        rest -= root.at(row, j) * root.at(k, j);
+      }
+      root.at(row, k) = row == k ? std::sqrt(std::max(rest, kNothing * first_value.at(k, k)))
+                                 : rest / root.at(k, k);
+    }
+  }
+  for (int column = 0; column < 6; ++column) {
+    for (int row = column; row < 6; ++row) {
+      double rest = row == column ? 1 : 0;
+      for (int j = column; j < row; ++j) {
+        rest -= root.at(row, j) * inverse.at(j, column);
+      }
+      inverse.at(row, column) = rest / root.at(row, row);
+    }
+  }
+  return inverse;
 }
 
 }  // namespace holdfast::solver

@@ -2,43 +2,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstring>
+#include <cstddef>
 
 #include "holdfast/base/algebra.hpp"
 
-/// The 6x6 arithmetic of BlockLu. A column is three pairs of doubles: the product that takes most
-/// of the time says so to the compiler, for the others plain loops suffice.
+/// 6x6 arithmetic where it takes no time; factor_kernels.hpp has what does.
 namespace holdfast::solver {
-
-using Pair = double __attribute__((vector_size(16)));
-
-inline Pair load(const double* from) {
-  Pair pair;
-  std::memcpy(&pair, from, sizeof pair);
-  return pair;
-}
-
-inline void store(double* to, Pair pair) { std::memcpy(to, &pair, sizeof pair); }
 
 /// C -= A B
 inline void subtract_product(base::Mat6<double>& c, const base::Mat6<double>& a,
                              const base::Mat6<double>& b) {
-  for (std::size_t column = 0; column < 6; ++column) {
-    double* const target = c.values.data() + 6 * column;
-    Pair low = load(target);
-    Pair middle = load(target + 2);
-    Pair high = load(target + 4);
+  for (std::size_t column = 0; column < 36; column += 6) {
     for (std::size_t k = 0; k < 6; ++k) {
-      const double value = b.values[6 * column + k];
-      const Pair factor = {value, value};
-      const double* const from = a.values.data() + 6 * k;
-      low -= load(from) * factor;
-      middle -= load(from + 2) * factor;
-      high -= load(from + 4) * factor;
+      for (std::size_t i = 0; i < 6; ++i) {
+        c.values[column + i] -= a.values[6 * k + i] * b.values[column + k];
+      }
     }
-    store(target, low);
-    store(target + 2, middle);
-    store(target + 4, high);
   }
 }
 
@@ -86,5 +65,10 @@ inline base::Mat6<double> scaled(const base::Mat6<double>& a, double factor) {
 /// Gauss-Jordan with row pivoting. Returns false for a singular or non-finite block; `inverse` is
 /// then void.
 bool invert(const base::Mat6<double>& block, base::Mat6<double>& inverse);
+
+/// C^-1 of the lower triangle C with C C' = block, by Cholesky's method. A pivot below kNothing of
+/// its `first_value`, before anything was eliminated, is rounding and taken as so much.
+base::Mat6<double> inverse_root(const base::Mat6<double>& block,
+                                const base::Mat6<double>& first_value);
 
 }  // namespace holdfast::solver

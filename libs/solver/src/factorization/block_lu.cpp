@@ -100,6 +100,7 @@ void BlockLu::set_symmetry(Symmetry symmetry) {
   if (symmetry == symmetry_) {
     return;
   }
+  HOLDFAST_CHECK(symmetry != Symmetry::kPositive && symmetry_ != Symmetry::kPositive);
   symmetry_ = symmetry;
   allocate();
   if (symmetry == Symmetry::kSymmetric) {
@@ -131,7 +132,7 @@ std::size_t BlockLu::factor_product_count() const {
     const std::size_t rows = column_start_[k + 1] - column_start_[k];
     count += rows * (rows + 1) / 2;
   }
-  return symmetry_ == Symmetry::kSymmetric ? count : 2 * count;
+  return symmetry_ == Symmetry::kNone ? 2 * count : count;
 }
 
 bool BlockLu::factor(int thread_count) {
@@ -183,10 +184,18 @@ bool BlockLu::make_column(std::size_t k, Scratch& scratch, const WaitFor& wait_f
     }
   }
   base::Mat6<double> pivot = diagonal_[k];
-  const bool is_made = symmetry_ == Symmetry::kSymmetric
-                           ? subtract_left_symmetric(k, pivot, wait_for, scratch)
-                           : subtract_left(k, pivot, wait_for, scratch);
-  if (!is_made || !invert(pivot, inverse_[k])) {
+  const bool is_made = symmetry_ == Symmetry::kNone
+                           ? subtract_left(k, pivot, wait_for, scratch)
+                           : subtract_left_symmetric(k, pivot, wait_for, scratch);
+  if (!is_made) {
+    return false;
+  }
+  if (symmetry_ == Symmetry::kPositive) {
+    inverse_[k] = inverse_root(pivot, diagonal_[k]);
+    factor_kernels().multiply_each(lower + begin, lower + end, transpose(inverse_[k]));
+    return true;
+  }
+  if (!invert(pivot, inverse_[k])) {
     return false;
   }
   if (upper != nullptr) {
@@ -227,6 +236,7 @@ bool BlockLu::subtract_left_symmetric(std::size_t k, base::Mat6<double>& pivot,
   const auto rows_from = [&](const Entry& entry) {
     return column_start_[base::at(entry.column) + 1] - entry.slot;
   };
+  const bool has_roots = symmetry_ == Symmetry::kPositive;
   SymmetricUpdate::Source sources[SymmetricUpdate::kSourceMax];
   for (std::size_t entry = row_start_[k]; entry < row_start_[k + 1];) {
     const std::size_t row_count = rows_from(row_entries_[entry]);
@@ -244,7 +254,7 @@ bool BlockLu::subtract_left_symmetric(std::size_t k, base::Mat6<double>& pivot,
                                        .slot_of_row = scratch.slot_of_row.data(),
                                        .lower = lower_.data(),
                                        .pivot = &pivot,
-                                       .inverse = inverse_.data(),
+                                       .inverse = has_roots ? nullptr : inverse_.data(),
                                        .sources = sources,
                                        .source_count = count,
                                        .row_count = row_count});
@@ -288,7 +298,8 @@ FactorView BlockLu::view() const {
           .rows = rows_.data(),
           .lower = lower_.data(),
           .upper = symmetry_ == Symmetry::kNone ? upper_.data() : nullptr,
-          .inverse = inverse_.data()};
+          .inverse = inverse_.data(),
+          .has_roots = symmetry_ == Symmetry::kPositive};
 }
 
 /// Forward and backward substitution for `count` right-hand sides, by place, then by side.

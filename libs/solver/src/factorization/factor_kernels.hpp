@@ -18,9 +18,10 @@ struct FactorView {
   std::size_t place_count = 0;
   const std::size_t* column_start = nullptr;
   const std::int32_t* rows = nullptr;
-  const base::Mat6<double>* lower = nullptr;    ///< L; of a symmetric matrix L D.
+  const base::Mat6<double>* lower = nullptr;    ///< As BlockLu has it.
   const base::Mat6<double>* upper = nullptr;    ///< None of a symmetric matrix.
-  const base::Mat6<double>* inverse = nullptr;  ///< Of the pivots.
+  const base::Mat6<double>* inverse = nullptr;  ///< Of the pivots, or of their roots.
+  bool has_roots = false;                       ///< Of a positive matrix.
 };
 
 /// What a finished column takes from a column to its right: slots `first` to `last` of the finished
@@ -51,7 +52,7 @@ struct SymmetricUpdate {
   const std::size_t* slot_of_row = nullptr;
   base::Mat6<double>* lower = nullptr;
   base::Mat6<double>* pivot = nullptr;          ///< Of column k.
-  const base::Mat6<double>* inverse = nullptr;  ///< Of the pivots, by column.
+  const base::Mat6<double>* inverse = nullptr;  ///< Of the pivots, by column; none with roots.
   const Source* sources = nullptr;              ///< Ascending.
   std::size_t source_count = 0;
   std::size_t row_count = 0;  ///< From row k on.

@@ -443,9 +443,19 @@ void substitute_symmetric(const FactorView& factors, Column* y, std::size_t coun
         subtract_across(rest, factors.lower[slot],
                         y[count * static_cast<std::size_t>(factors.rows[slot]) + c]);
       }
+      Column& own = y[count * k + c];
+      if (factors.has_roots) {  // D^-1/2' (D^-1/2 b + rest)
+        Column sum{};
+        for (std::size_t i = 0; i < 6; ++i) {
+          rest[i] = -own[i] - rest[i];
+        }
+        subtract_across(sum, factors.inverse[k], rest);
+        own = sum;
+        continue;
+      }
       multiply_by(factors.inverse[k], rest);
       for (std::size_t i = 0; i < 6; ++i) {
-        y[count * k + c][i] += rest[i];
+        own[i] += rest[i];
       }
     }
   }
@@ -494,12 +504,14 @@ void multiply_each(Block* first, Block* last, const Block& a) {
   }
 }
 
-/// (L D)_ik -= sum over the finished columns j of (L D)_ij L_kj'
+/// (L D)_ik -= sum over the finished columns j of (L D)_ij L_kj'; with roots, L_ij L_kj'.
 void update_symmetric(const SymmetricUpdate& update) {
   Block l_k[SymmetricUpdate::kSourceMax];
   for (std::size_t j = 0; j < update.source_count; ++j) {
     const SymmetricUpdate::Source& source = update.sources[j];
-    l_k[j] = product(update.lower[source.slot], update.inverse[source.column]);
+    l_k[j] = update.inverse == nullptr
+                 ? update.lower[source.slot]
+                 : product(update.lower[source.slot], update.inverse[source.column]);
   }
   const auto subtract_row = [&](Block& target, std::size_t row) {
     const auto left = [&](std::size_t j) -> const Block& {

@@ -15,7 +15,14 @@ namespace holdfast::solver {
 struct FactorView;
 class SelectedInverse;
 
-enum class Symmetry : std::uint8_t { kNone, kSymmetric };
+enum class Symmetry : std::uint8_t {
+  kNone,
+  kSymmetric,
+  /// Symmetric and positive semidefinite: Cholesky's factors, which keep their digits however much
+  /// the scales of rows differ, within a block too. A pivot that is nothing but rounding is taken
+  /// as that rounding, so no matrix is singular.
+  kPositive,
+};
 
 /// Sparse direct solver for matrices of 6x6 blocks: A = (I + L) D (I + U'), D block-diagonal.
 ///
@@ -49,7 +56,7 @@ class BlockLu {
   void set_diagonal(std::size_t node, const base::Mat6<double>& block);
 
   /// Whether A is symmetric from here on. If it no longer is, none of the factors that are there is
-  /// made again; if it is again, all are.
+  /// made again; if it is again, all are. Not of a positive one.
   void set_symmetry(Symmetry symmetry);
 
   /// Returns false if a diagonal block became singular. The bits do not depend on the number of
@@ -124,8 +131,9 @@ class BlockLu {
   std::vector<std::vector<std::size_t>> column_edges_;  ///< column -> edges stored in it
 
   std::vector<base::Mat6<double>> diagonal_;  ///< A(k, k)
-  std::vector<base::Mat6<double>> inverse_;   ///< D(k)^-1
-  std::vector<base::Mat6<double>> lower_;     ///< L(i, k); of a symmetric matrix L(i, k) D(k).
+  std::vector<base::Mat6<double>> inverse_;   ///< D(k)^-1; of a positive matrix that of D's root.
+  /// L(i, k); of a symmetric matrix L(i, k) D(k), of a positive one Cholesky's.
+  std::vector<base::Mat6<double>> lower_;
   std::vector<base::Mat6<double>> upper_;  ///< U(k, i), not yet divided by D, where it is needed.
   std::vector<base::Mat6<double>> edge_lower_;  ///< A(i, k) of each edge, i below k
   std::vector<bool> is_stale_;                  ///< columns whose factor is out of date

@@ -132,7 +132,7 @@ class Coarsening {
     }
     find_clusters(shift);
     coarse_.shift = fine_.shift + shift;
-    coarse_.is_cubic = fine_.is_cubic;
+    coarse_.is_along_axes = fine_.is_along_axes;
     if (!fine_.box.empty()) {
       cluster_count_ = unite_slivers(fine_, coarse_.shift, cluster_, cluster_count_, coarse_.box);
     }
@@ -183,7 +183,7 @@ class Coarsening {
     }
     cluster_count_ = at(count);
     coarse_.shift = fine_.shift;
-    coarse_.is_cubic = fine_.is_cubic;
+    coarse_.is_along_axes = fine_.is_along_axes;
     for (std::size_t i = 0; i < fine_.box.size() && i < cluster_count_; ++i) {
       coarse_.box.push_back(fine_.box[at(fine_.order[i])]);
     }
@@ -524,7 +524,7 @@ class Coarsening {
   /// How much a part counts where means are taken: as cubes' parts are much alike, they count the
   /// same.
   double weight(const Part& part) const {
-    if (fine_.is_cubic) {
+    if (fine_.is_along_axes) {
       return 1;
     }
     return fine_.springs[part.spring].strength();
@@ -539,12 +539,12 @@ class Coarsening {
       for (std::size_t k = 0; k < 3; ++k) {
         const double component = fine_.springs[part.spring].direction[k];
         springs[part.target].direction[k] +=
-            share * (fine_.is_cubic ? std::abs(component) : component);
+            share * (fine_.is_along_axes ? std::abs(component) : component);
       }
     }
     for (std::size_t i = 0; i < springs.size(); ++i) {
       Spring& spring = springs[i];
-      spring.direction = fine_.is_cubic
+      spring.direction = fine_.is_along_axes
                              ? main_axis(spring.direction, spring.partner)
                              : mean_direction(spring.direction, weights[i], spring.partner);
     }
@@ -572,7 +572,7 @@ class Coarsening {
         spring.middle[k] += share * (part.offset[k] + fine.middle[k]);
       }
       // Of springs that lead this way and that only the way across counts.
-      const Point& way = fine_.is_cubic ? fine.direction : spring.direction;
+      const Point& way = fine_.is_along_axes ? fine.direction : spring.direction;
       const double length = fine.length * std::abs(dot(fine.direction, way));
       Sum& sum = sums[part.target];
       sum.length += share * length;

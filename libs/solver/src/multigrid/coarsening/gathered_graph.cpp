@@ -147,7 +147,7 @@ SpringGraph gathered_graph(const SpringGraph& part, Gathering& gathering,
   }
   SpringGraph graph;
   graph.shift = part.shift;
-  graph.is_cubic = part.is_cubic;
+  graph.is_along_axes = part.is_along_axes;
   graph.springs = std::move(all.springs);
   graph.start = {0};
   const bool is_any_alone =

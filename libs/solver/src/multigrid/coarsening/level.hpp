@@ -41,17 +41,33 @@ struct Couplings<double> {
   std::size_t free_type_count = 0;
 };
 
-/// The finest level's beams by node and direction, if all are one pitch long.
+/// The finest level's beams, as StencilView has them.
 struct Stencil {
   const std::int32_t* other = nullptr;  ///< The network's; null if there is no stencil.
-  std::vector<PairRow<float>> rows;
-  std::vector<PairRow<double>> rows_double;
+  std::size_t pair_count = 0;
+  std::vector<PairRow<float>> rows = {};
+  std::vector<PairRow<double>> rows_double = {};
+  bool has_long_beams = false;
+  const std::uint32_t* kind = nullptr;   ///< The network's.
+  const BeamLengths* lengths = nullptr;  ///< The network's.
+  std::vector<BeamRow<float>> beams = {};
+  std::vector<BeamRow<double>> beams_double = {};
+  std::vector<MiddleSpring> springs = {};
 
-  StencilView view() const {
+  bool is_along_axes() const { return !beams.empty(); }
+
+  /// What the kernels see; those for springs look at the lengths of short beams, too, as missing
+  /// ones have none.
+  StencilView view(bool has_kinds) const {
     return {.other = other,
-            .pair_count = rows.size(),
+            .pair_count = pair_count,
             .rows = rows.data(),
-            .rows_double = rows_double.data()};
+            .rows_double = rows_double.data(),
+            .kind = has_kinds ? kind : nullptr,
+            .lengths = lengths,
+            .beams = is_along_axes() ? beams.data() : nullptr,
+            .beams_double = beams_double.data(),
+            .springs = springs.data()};
   }
 };
 
@@ -65,8 +81,7 @@ struct Gathering {
   bool is_empty() const { return node.empty(); }
 };
 
-/// One level of the preconditioner. The finest of cubes on a floor keeps its springs in
-/// ReducedNetwork.
+/// One level of the preconditioner.
 template <class Real>
 struct Level {
   std::size_t node_count = 0;   ///< Of a part of a robot this rank's own.
@@ -111,7 +126,7 @@ struct Level {
             .block = couplings.blocks.block.data(),
             .blocks = couplings.blocks.blocks.data(),
             .diagonal = couplings.blocks.diagonal.data(),
-            .stencil = stencil.view()};
+            .stencil = stencil.view(stencil.has_long_beams)};
   }
 
   TransferView<Real> transfer() const {
@@ -138,7 +153,8 @@ inline ClusterView<double> Level<double>::view() const {
           .spring = couplings.spring.data(),
           .springs = couplings.springs.data(),
           .ground = couplings.ground.data(),
-          .free_type_count = couplings.free_type_count};
+          .free_type_count = couplings.free_type_count,
+          .stencil = stencil.view(true)};
 }
 
 }  // namespace holdfast::solver

@@ -4,15 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <bit>
 #include <map>
-#include <numeric>
 #include <span>
 #include <utility>
 
 #include "holdfast/base/algebra.hpp"
 #include "holdfast/solver/morton_key.hpp"
+#include "multigrid/coarsening/first_fit.hpp"
 #include "multigrid/coarsening/morton_order.hpp"
 #include "multigrid/kernels/kernels.hpp"
 
@@ -24,14 +22,6 @@ using host::Team;
 using model::Robot;
 using model::Support;
 
-/// Whether a robot is of cubes that touch nothing but a floor.
-bool is_on_floor_only(const Robot& robot) {
-  return robot.lattice() == base::kCubic &&
-         std::ranges::all_of(robot.facets(), [](const model::Facet& facet) {
-           return facet.direction == base::down(base::kCubic);
-         });
-}
-
 constexpr std::size_t kColourMax = base::Lattice::kDirectionCountMax + 1;
 
 /// Builds a network of the modules that an elimination leaves.
@@ -42,11 +32,10 @@ class Builder {
         team_(team),
         elimination_(eliminate(robot, team)),
         order_(morton_order(robot, elimination_.is_gone, team)),
-        is_cubic_(robot.lattice() == base::kCubic),
         direction_count_(at(robot.lattice().direction_count)) {
     network_.lattice = robot.lattice();
+    network_.is_along_axes = robot.lattice() == base::kCubic;
     network_.ranks = robot.ranks();
-    network_.is_cubic = host::all(network_.ranks, is_on_floor_only(robot));
     network_.node_count = order_.modules.size();
     network_.own_count = static_cast<std::size_t>(std::ranges::count_if(
         order_.modules, [&](const auto& item) { return at(item.module) < robot.own_count(); }));
@@ -96,174 +85,71 @@ class Builder {
                  base::axial_of(robot_.lattice(), robot_.modules()[at(module)].cell)));
   }
 
-  /// The colour of a module whose neighbours have taken some: the first, which makes two for cubes,
-  /// else the lattice's own if no long beam has brought it there, of which there are four.
-  std::uint8_t free_colour(std::int32_t module, unsigned taken) const {
-    if (!is_cubic_) {
-      const std::uint8_t own = lattice_colour(module);
-      if ((taken >> own & 1U) == 0) {
-        return own;
+  /// Modules for FirstFit, copies among them.
+  struct Items {
+    const Builder& builder;
+    host::Halo& halo;
+
+    std::size_t count() const { return builder.network_.own_count; }
+
+    std::size_t place_count() const { return builder.robot_.modules().size(); }
+
+    std::size_t place(std::size_t item) const { return at(module(item)); }
+
+    template <class F>
+    void for_neighbours(std::size_t item, const F& f) const {
+      for (std::size_t direction = 0; direction < builder.direction_count_; ++direction) {
+        int length = 0;
+        const std::int32_t other = builder.far_end(place(item), direction, length);
+        if (other != Robot::kNoNeighbour) {
+          f(at(other));
+        }
       }
     }
-    return static_cast<std::uint8_t>(std::countr_one(taken));
-  }
 
-  /// The colours of the modules that a module's beams lead to.
-  unsigned colours_around(std::int32_t module, const std::vector<std::uint8_t>& colour) const {
-    unsigned taken = 0;
-    for (std::size_t direction = 0; direction < direction_count_; ++direction) {
-      int length = 0;
-      const std::int32_t other = far_end(at(module), direction, length);
-      if (other != Robot::kNoNeighbour && colour[at(other)] != kNoColour) {
-        taken |= 1U << colour[at(other)];
+    template <class F>
+    void for_copies(const F& f) const {
+      for (const host::Copy& copy : builder.robot_.part().copies) {
+        f(at(copy.place), copy.original.rank);
       }
     }
-    return taken;
-  }
 
-  /// Whether a copy of a lower rank's module at the end of a module's beam has its colour.
-  bool is_shared(std::int32_t module, const std::vector<std::uint8_t>& colour,
-                 const std::vector<std::int32_t>& rank) const {
-    bool is_any = false;
-    for (std::size_t direction = 0; direction < direction_count_; ++direction) {
-      int length = 0;
-      const std::int32_t other = far_end(at(module), direction, length);
-      is_any = is_any || (other != Robot::kNoNeighbour && rank[at(other)] < robot_.ranks().rank() &&
-                          colour[at(other)] == colour[at(module)]);
+    void tell(std::vector<std::uint8_t>& colours) const {
+      halo.update(colours.data(), sizeof(std::uint8_t));
     }
-    return is_any;
-  }
 
-  /// First fit along the curve, for this rank's modules: sees those before them and, of other
-  /// ranks', the copies that have colours.
-  void colour_own(std::vector<std::uint8_t>& colour) const {
-    std::fill_n(colour.begin(), robot_.own_count(), kNoColour);
-    for (std::size_t i = 0; i < network_.own_count; ++i) {
-      const std::int32_t module = order_.modules[i].module;
-      colour[at(module)] = free_colour(module, colours_around(module, colour));
+    bool is_along_axes() const { return builder.network_.is_along_axes; }
+
+    std::uint8_t chessboard(std::size_t item) const { return builder.lattice_colour(module(item)); }
+
+    bool has_two_colours() const { return is_along_axes(); }
+
+    /// Not of cubes, to which first fit gives two; of all others the lattice's own, of which there
+    /// are four, if no long beam has brought it there.
+    std::uint8_t preferred(std::size_t item) const {
+      return is_along_axes() ? kNoColour : chessboard(item);
     }
-  }
 
-  /// The lattice's colour of the first module along the curve, of the first rank that has any.
-  std::uint8_t first_colour() const {
-    const bool has_any = network_.own_count > 0;
-    const std::uint8_t mine = has_any ? lattice_colour(order_.modules.front().module) : kNoColour;
-    const auto firsts = host::gather(robot_.ranks(), std::span<const std::uint8_t>(&mine, 1));
-    const auto first = std::ranges::find_if(firsts, [](auto one) { return one != kNoColour; });
-    return first != firsts.end() ? *first : kNoColour;
-  }
+    /// Of what its beams lead to, that comes before a module which has the lower coordinates.
+    bool is_before(std::size_t place, std::size_t item) const {
+      return sum(place) < sum(at(module(item)));
+    }
 
-  /// What first fit comes to where all beams are short: the lattice's own colours, so exchanged
-  /// that the first module along the curve has the first.
-  void guess_colours(std::vector<std::uint8_t>& colour) const {
-    const std::uint8_t first = first_colour();
-    const std::uint8_t change = is_cubic_ && first != kNoColour ? first : std::uint8_t{0};
-    team_.share(0, network_.own_count, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const std::int32_t module = order_.modules[i].module;
-        colour[at(module)] = static_cast<std::uint8_t>(lattice_colour(module) ^ change);
-      }
-    });
-  }
+    std::int32_t module(std::size_t item) const { return builder.order_.modules[item].module; }
 
-  /// Whether first fit along the curve leaves a module of a cubic lattice its colour: of what its
-  /// beams lead to, that lies before it which has the lower coordinates.
-  bool is_first_fit(std::int32_t module, const std::vector<std::uint8_t>& colour) const {
-    const auto sum = [&](std::int32_t one) {
-      const base::Cell& cell = robot_.modules()[at(one)].cell;
+    std::int32_t sum(std::size_t module) const {
+      const base::Cell& cell = builder.robot_.modules()[module].cell;
       return cell.x + cell.y + cell.z;
-    };
-    unsigned taken = 0;
-    for (std::size_t direction = 0; direction < direction_count_; ++direction) {
-      int length = 0;
-      const std::int32_t other = far_end(at(module), direction, length);
-      const bool is_before = other != Robot::kNoNeighbour && sum(other) < sum(module);
-      if (is_before && colour[at(other)] != kNoColour) {
-        taken |= 1U << colour[at(other)];
-      }
     }
-    return std::countr_one(taken) == colour[at(module)];
-  }
-
-  /// First fit along the curve. On cubes that is mostly a chessboard, and whether it is threads can
-  /// tell; else modules are coloured one by one.
-  void colour_whole(std::vector<std::uint8_t>& colour) const {
-    std::atomic<bool> is_guessed = is_cubic_;
-    if (is_cubic_) {
-      guess_colours(colour);
-      team_.share(0, network_.own_count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end && is_guessed.load(std::memory_order_relaxed); ++i) {
-          if (!is_first_fit(order_.modules[i].module, colour)) {
-            is_guessed = false;
-          }
-        }
-      });
-    }
-    if (!is_guessed) {
-      colour_own(colour);
-    }
-  }
-
-  /// The colours of one machine: those of lower ranks, whose modules come before along the curve,
-  /// are guessed, then asked for until they stay. As many rounds as ranks would do; after a few
-  /// neighbours of two ranks need only have two colours.
-  void colour_on_ranks(std::vector<std::uint8_t>& colour) const {
-    constexpr int kTrialRoundMax = 8;
-    std::vector<std::int32_t> rank(colour.size(), robot_.ranks().rank());
-    for (const host::Copy& copy : robot_.part().copies) {
-      rank[at(copy.place)] = copy.original.rank;
-    }
-    const auto halo = robot_.ranks().make_halo(robot_.own_count(), robot_.part().copies);
-    guess_colours(colour);
-    bool is_any_changed = true;
-    for (int round = 0; is_any_changed && round < kTrialRoundMax; ++round) {
-      const std::vector<std::uint8_t> before = colour;
-      halo->update(colour.data(), sizeof(std::uint8_t));
-      for (const host::Copy& copy : robot_.part().copies) {
-        colour[at(copy.place)] =
-            copy.original.rank < robot_.ranks().rank() ? colour[at(copy.place)] : kNoColour;
-      }
-      const bool is_changed = round == 0 || colour != before;
-      if (is_changed) {
-        colour_own(colour);
-      }
-      is_any_changed = host::any(robot_.ranks(), is_changed);
-    }
-    if (is_any_changed) {
-      part_from_other_ranks(rank, *halo, colour);
-    }
-    std::fill(colour.begin() + static_cast<std::ptrdiff_t>(robot_.own_count()), colour.end(),
-              kNoColour);
-  }
-
-  /// As Coarsening does: neighbours of two ranks are to have two colours.
-  void part_from_other_ranks(const std::vector<std::int32_t>& rank, host::Halo& halo,
-                             std::vector<std::uint8_t>& colour) const {
-    constexpr int kTrialRoundMax = 8;
-    bool is_any_changed = true;
-    for (int round = 0; is_any_changed && round < kTrialRoundMax; ++round) {
-      is_any_changed = false;
-      halo.update(colour.data(), sizeof(std::uint8_t));
-      for (std::size_t i = 0; i < network_.own_count; ++i) {
-        const std::int32_t module = order_.modules[i].module;
-        if (is_shared(module, colour, rank)) {
-          colour[at(module)] =
-              static_cast<std::uint8_t>(std::countr_one(colours_around(module, colour)));
-          is_any_changed = true;
-        }
-      }
-      is_any_changed = host::any(network_.ranks, is_any_changed);
-    }
-  }
+  };
 
   /// Nodes are numbered by colour, along the curve in each; copies, which have none, come last.
   void colour_nodes() {
-    std::vector<std::uint8_t> colour(robot_.modules().size(), kNoColour);
-    if (robot_.ranks().is_shared()) {
-      colour_on_ranks(colour);
-    } else {
-      colour_whole(colour);
-    }
+    const auto halo = robot_.ranks().make_halo(robot_.own_count(), robot_.part().copies);
+    std::vector<std::uint8_t> colour =
+        FirstFit(Items{.builder = *this, .halo = *halo}, robot_.ranks(), team_).find();
+    std::fill(colour.begin() + static_cast<std::ptrdiff_t>(robot_.own_count()), colour.end(),
+              kNoColour);
     const auto group = [&](const KeyedModule& item) {
       return std::min<std::size_t>(colour[at(item.module)], kColourMax);
     };
@@ -312,22 +198,6 @@ class Builder {
     order_ = {};
   }
 
-  void connect() {
-    if (network_.is_cubic) {
-      network_.cubic.other.resize(network_.node_count);
-      kinds_.resize(network_.node_count);
-      team_.share(0, network_.node_count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t node = begin; node < end; ++node) {
-          connect_cube(node);
-        }
-      });
-    } else if (network_.has_long_beams) {
-      connect_rows();
-    } else {
-      connect_by_direction();
-    }
-  }
-
   /// Calls f(direction, length, far node) for every beam of a node.
   template <class F>
   void for_beams(std::size_t node, const F& f) const {
@@ -341,68 +211,30 @@ class Builder {
     }
   }
 
-  void connect_cube(std::size_t node) {
-    Kind kind{};
-    network_.cubic.other[node].fill(static_cast<std::int32_t>(network_.node_count));
-    for_beams(node, [&](std::size_t direction, std::uint8_t length, std::int32_t other) {
-      network_.cubic.other[node][direction] = other;
-      kind[direction] = length;
-    });
-    kinds_[node] = kind;
-  }
-
-  void connect_by_direction() {
+  void connect() {
     const std::size_t count = network_.node_count;
     LatticeBeams& beams = network_.beams;
-    beams.by_direction.assign(direction_count_ * count, static_cast<std::int32_t>(count));
-    std::vector<LatticeBeams::Lengths> lengths(count);
+    beams.other.assign(direction_count_ * count, static_cast<std::int32_t>(count));
+    std::vector<BeamLengths> lengths(count);
     team_.share(0, count, [&](std::size_t begin, std::size_t end) {
       for (std::size_t node = begin; node < end; ++node) {
         for_beams(node, [&](std::size_t direction, std::uint8_t length, std::int32_t other) {
-          beams.by_direction[direction_count_ * node + direction] = other;
+          beams.other[direction_count_ * node + direction] = other;
           lengths[node][direction] = at(other) < count ? length : std::uint8_t{0};
         });
       }
     });
-    const auto own_rows =
-        std::span(beams.by_direction).first(direction_count_ * network_.own_count);
+    const auto own_rows = std::span(beams.other).first(direction_count_ * network_.own_count);
     beams.end_count = own_rows.size() - static_cast<std::size_t>(std::ranges::count(
                                             own_rows, static_cast<std::int32_t>(count)));
     find_kinds(lengths);
   }
 
-  void connect_rows() {
-    const std::size_t count = network_.node_count;
-    LatticeBeams& beams = network_.beams;
-    beams.start.assign(count + 1, 0);
-    std::vector<LatticeBeams::Lengths> lengths(count);
-    std::vector<std::vector<std::int32_t>> others((count + Team::kChunk - 1) / Team::kChunk);
-    team_.share(0, count, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t node = begin; node < end; ++node) {
-        std::vector<std::int32_t>& part = others[node / Team::kChunk];
-        for_beams(node, [&](std::size_t direction, std::uint8_t length, std::int32_t other) {
-          if (at(other) < count) {
-            part.push_back(other);
-            lengths[node][direction] = length;
-            ++beams.start[node + 1];
-          }
-        });
-      }
-    });
-    std::partial_sum(beams.start.begin(), beams.start.end(), beams.start.begin());
-    beams.other.reserve(at(beams.start[count]));
-    for (const std::vector<std::int32_t>& part : others) {
-      beams.other.insert(beams.other.end(), part.begin(), part.end());
-    }
-    beams.end_count = at(beams.start[network_.own_count]);
-    find_kinds(lengths);
-  }
-
   /// Nodes with the same beams share them.
-  void find_kinds(const std::vector<LatticeBeams::Lengths>& lengths) {
+  void find_kinds(const std::vector<BeamLengths>& lengths) {
     LatticeBeams& beams = network_.beams;
     beams.kind.resize(lengths.size());
-    std::map<LatticeBeams::Lengths, std::uint32_t> known;
+    std::map<BeamLengths, std::uint32_t> known;
     for (std::size_t node = 0; node < lengths.size(); ++node) {
       if (node > 0 && lengths[node] == lengths[node - 1]) {
         beams.kind[node] = beams.kind[node - 1];
@@ -457,25 +289,17 @@ class Builder {
                                        .direction = static_cast<std::uint8_t>(direction),
                                        .length = 1,
                                        .facet = static_cast<std::int32_t>(i)});
-      if (network_.is_cubic) {
-        kinds_[at(node)][at(direction)] = 1;
-      }
     }
     std::ranges::sort(network_.ground_beams, {},
                       [](const GroundBeam& beam) { return std::pair(beam.node, beam.direction); });
-    network_.cubic.kind = Kinds(kinds_);
   }
-
-  static constexpr std::uint8_t kNoColour = 255;
 
   const Robot& robot_;
   Team& team_;
   Elimination elimination_;
   MortonOrder order_;
-  bool is_cubic_;  ///< The lattice.
   std::size_t direction_count_;
   std::vector<std::int32_t> node_of_;
-  std::vector<Kind> kinds_;  ///< By node, of cubes.
   ReducedNetwork network_;
 };
 

@@ -13,7 +13,6 @@
 #include "holdfast/host/team.hpp"
 #include "holdfast/model/robot.hpp"
 #include "multigrid/coarsening/elimination.hpp"
-#include "multigrid/kernels/kinds.hpp"
 #include "multigrid/kernels/vectors.hpp"
 
 /// What is left of a robot when everything is eliminated that can be eliminated by hand: static
@@ -41,32 +40,20 @@ struct GroundBeam {
   static constexpr std::int32_t kNoFacet = -1;
 };
 
-/// What connects the nodes of cubes that touch nothing but a floor: direction by direction, as
-/// their own kernels read it.
-struct CubicBeams {
-  std::vector<Others> other;
-  Kinds kind;  ///< A beam down to the ground or to a fixed module has no other node.
-};
-
-/// What connects the nodes of all other robots: by direction if all beams are one pitch long, else
-/// in compressed rows.
+/// What connects the nodes, direction by direction.
 struct LatticeBeams {
-  /// Direction -> pitches that the beam there is long, 0 for none.
-  using Lengths = std::array<std::uint8_t, base::Lattice::kDirectionCountMax>;
-
-  std::vector<std::int32_t> by_direction;  ///< By node, as many as directions; node_count for none.
-  std::vector<std::int32_t> start;
-  std::vector<std::int32_t> other;  ///< Of each node by ascending direction.
+  std::vector<std::int32_t> other;  ///< By node, as many as directions; node_count for none.
   std::size_t end_count = 0;        ///< Two for each beam between own nodes, one to a copy.
   std::vector<std::uint32_t> kind;  ///< Node -> lengths
-  std::vector<Lengths> lengths;
+  std::vector<BeamLengths> lengths;
 };
 
+/// The nodes and what connects and holds them.
 ///
 /// Of a part of a robot the nodes are this rank's own, and after them the copies of other ranks'.
 struct ReducedNetwork {
   base::Lattice lattice;
-  bool is_cubic = false;  ///< Whether `cubic` describes it, else `beams`.
+  bool is_along_axes = false;  ///< Whether all beams are, as those of cubes.
   std::size_t node_count = 0;
   std::size_t own_count = 0;       ///< node_count where there are no copies.
   std::size_t all_count = 0;       ///< All ranks' own ones together.
@@ -74,7 +61,6 @@ struct ReducedNetwork {
   std::reference_wrapper<host::Ranks> ranks = host::single_rank();  ///< Who owns the originals.
   std::vector<std::size_t> colour_start;  ///< First node of each colour, then own_count.
   std::vector<std::int32_t> module;       ///< Node -> module.
-  CubicBeams cubic;
   LatticeBeams beams;
   std::vector<GroundBeam> ground_beams;  ///< By node, then by direction.
   std::vector<std::int32_t> order;       ///< Nodes along the Morton curve; copies after them.

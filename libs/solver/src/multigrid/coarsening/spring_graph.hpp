@@ -36,8 +36,8 @@ struct SpringGraph {
   std::vector<std::int32_t> other;
   std::vector<std::uint32_t> pattern;
   std::vector<PackedSpring> springs;
-  unsigned shift = 0;     ///< Cells are 2^(shift/3) modules wide.
-  bool is_cubic = false;  ///< All springs are along the axes, however coarse the level.
+  unsigned shift = 0;          ///< Cells are 2^(shift/3) modules wide.
+  bool is_along_axes = false;  ///< All springs are, however coarse the level.
 
   /// Whether other ranks may have parts.
   bool is_part() const { return ranks.get().is_shared(); }

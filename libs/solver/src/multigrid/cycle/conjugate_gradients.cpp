@@ -29,14 +29,9 @@ constexpr double kSolidDegree = 5;
 constexpr int kPatience = 50;
 
 bool is_solid(const ReducedNetwork& network) {
-  std::size_t ends = 0;
-  for (std::size_t node = 0; network.is_cubic && node < network.own_count; ++node) {
-    const Kind& kind = network.cubic.kind[node];
-    for (std::size_t d = 0; d < base::kDirectionCount; ++d) {
-      ends += kind[d] > 0 ? 1 : 0;
-    }
-  }
-  return static_cast<double>(ends) > kSolidDegree * static_cast<double>(network.own_count);
+  const std::size_t ends = network.beams.end_count + network.ground_beams.size();
+  return network.is_along_axes &&
+         static_cast<double>(ends) > kSolidDegree * static_cast<double>(network.own_count);
 }
 
 }  // namespace

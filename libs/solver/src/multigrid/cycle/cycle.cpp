@@ -40,14 +40,9 @@ void Cycle<Real>::relax_colour(std::size_t depth, std::size_t colour, bool is_fi
               [&](std::size_t begin, std::size_t end) {
                 const Range range{begin, end};
                 if (is_first) {
-                  const std::uint32_t* const type = hierarchy_.is_cubic(depth)
-                                                        ? hierarchy_.block_lattice().type
-                                                        : level.type.data();
-                  sweeps().relax_first(type, level.inverse.data(), r, z, range);
-                } else if (hierarchy_.is_cubic(depth)) {
-                  sweeps().relax_lattice(hierarchy_.block_lattice(), r, z, range);
+                  sweeps().relax_first(level.type.data(), level.inverse.data(), r, z, range);
                 } else {
-                  sweeps().relax_cluster(level.block_view(), r, z, range);
+                  sweeps().relax(level.block_view(), r, z, range);
                 }
               });
 }
@@ -121,16 +116,9 @@ void Cycle<Real>::pass_down(std::size_t depth, std::size_t settled) {
   const std::size_t cluster_count = level.member_start.size() - 1;
   const Vector forces = passed_down(depth + 1);
   const Six<float>* z = swept_z(level).data();
-  const Kernels<Real>& kernel = kernels<Real>();
   team_.share(0, cluster_count, [&](std::size_t begin, std::size_t end) {
-    const Range range{begin, end};
-    if (hierarchy_.is_cubic(depth)) {
-      kernel.restrict_lattice(hierarchy_.lattice(), level.transfer(), settled, level.r.data(), z,
-                              forces.data(), range);
-    } else {
-      kernel.restrict_cluster(level.view(), level.transfer(), settled, level.r.data(), z,
-                              forces.data(), range);
-    }
+    kernels<Real>().restrict_to(level.view(), level.transfer(), settled, level.r.data(), z,
+                                forces.data(), {begin, end});
   });
   gather_forces(depth + 1);
 }
@@ -188,14 +176,8 @@ template <>
 void Cycle<double>::leave_residual(std::size_t depth) {
   Level<double>& level = hierarchy_.levels()[depth];
   team_.share(0, level.node_count, [&](std::size_t begin, std::size_t end) {
-    const Range range{begin, end};
-    if (hierarchy_.is_cubic(depth)) {
-      rounding().leave_lattice(hierarchy_.lattice(), level.r.data(), level.z.data(),
-                               level.rough_r.data(), range);
-    } else {
-      rounding().leave_cluster(level.view(), level.r.data(), level.z.data(), level.rough_r.data(),
-                               range);
-    }
+    rounding().leave(level.view(), level.r.data(), level.z.data(), level.rough_r.data(),
+                     {begin, end});
   });
 }
 

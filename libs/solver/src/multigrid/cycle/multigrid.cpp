@@ -179,12 +179,6 @@ void Multigrid::take_facet(std::size_t facet) {
     return;
   }
   beam.contact = contact;
-  if (network_.is_cubic) {
-    Kind kind = network_.cubic.kind[at(beam.node)];
-    kind[beam.direction] = contact == 0 ? 1 : 0;
-    kind[kContactByte] = contact;
-    network_.cubic.kind.set(at(beam.node), kind);
-  }
   is_contact_new_ = true;
   is_stale_ = true;
 }
@@ -256,8 +250,8 @@ const Mat& Multigrid::known_tangent(const FacetState& facet) const {
 /// Whether the robot is much wider than its feet are together.
 bool Multigrid::is_wide_on_feet() const {
   const auto feet = static_cast<double>(host::total(ranks(), ground_nodes_.size()));
-  return !network_.is_cubic && static_cast<double>(network_.all_count) >
-                                   kWidthMax * feet * static_cast<double>(network_.extent);
+  return !network_.is_along_axes && static_cast<double>(network_.all_count) >
+                                        kWidthMax * feet * static_cast<double>(network_.extent);
 }
 
 /// Facets, where they are few: those of a few feet. Which part of a foot presses decides how it
@@ -401,19 +395,16 @@ LinearOutcome Multigrid::begin() {
 }
 
 /// Whether bending is that of chains: the network has few nodes, and these few neighbours. A single
-/// beam may then have a large part of the whole error's energy.
+/// beam may then have a large part of the whole error's energy. Of cubes the ground that they are
+/// stuck to counts as one.
 bool Multigrid::is_thin() const {
   if (network_.all_count > kThinCountMax) {
     return false;
   }
-  std::size_t ends = network_.beams.end_count;
-  for (std::size_t node = 0; network_.is_cubic && node < network_.own_count; ++node) {
-    const Kind& kind = network_.cubic.kind[node];
-    ends +=
-        static_cast<std::size_t>(std::count_if(kind.begin(), kind.begin() + base::kDirectionCount,
-                                               [](auto length) { return length > 0; }));
-  }
-  return static_cast<double>(host::total(ranks(), ends)) <=
+  const auto stuck_count = static_cast<std::size_t>(
+      network_.is_along_axes ? std::ranges::count(network_.ground_beams, 0, &GroundBeam::contact)
+                             : 0);
+  return static_cast<double>(host::total(ranks(), network_.beams.end_count + stuck_count)) <=
          kThinEndCount * static_cast<double>(network_.all_count);
 }
 

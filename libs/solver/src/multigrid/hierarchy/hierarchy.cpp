@@ -113,7 +113,7 @@ class Places {
  public:
   Places(const ReducedNetwork& network, double pitch)
       : lattice_(network.lattice),
-        is_cubic_(network.lattice == base::kCubic),
+        is_along_axes_(network.is_along_axes),
         low_(network.low),
         pitch_(pitch) {
     constexpr double kPerMm = 1U << 20U;
@@ -127,7 +127,7 @@ class Places {
   }
 
   Point of(const base::Cell& cell) const {
-    if (is_cubic_) {
+    if (is_along_axes_) {
       return {pitch_ * cell.x, pitch_ * cell.y, pitch_ * cell.z};
     }
     const base::Cell axial =
@@ -145,7 +145,7 @@ class Places {
 
  private:
   base::Lattice lattice_;
-  bool is_cubic_;
+  bool is_along_axes_;
   base::Cell low_;
   double pitch_;
   std::array<Point, 3> step_{};
@@ -187,100 +187,12 @@ void Hierarchy<Real>::place_nodes(Team& team, ReducedNetwork& network, SpringGra
   network.key = std::vector<std::uint64_t>();
 }
 
-/// The springs of cubes: nodes of the same kind with partners on the same sides share them. Kinds
-/// are numbered in the order in which nodes are first of them.
+/// The springs: the same for all nodes of one kind.
 template <class Real>
-void Hierarchy<Real>::connect_cubes(Team& team, SpringGraph& graph) const {
-  /// What a chunk of nodes has of springs.
-  struct Part {
-    std::int32_t end_count = 0;  ///< Then how many there are before.
-    std::vector<std::uint64_t> kinds;
-    std::vector<std::uint32_t> patterns;  ///< Of these kinds.
-  };
-
-  const std::size_t count = network_.node_count;
-  const CubicBeams& cubic = network_.cubic;
-  /// The lengths of a node's beams, but for those to what is held, as one number.
-  const auto kind_of = [&](std::size_t node) {
-    Kind kind{};
-    for (std::size_t d = 0; d < base::kDirectionCount; ++d) {
-      const bool is_spring = cubic.kind[node][d] > 0 && at(cubic.other[node][d]) < count;
-      kind[d] = is_spring ? cubic.kind[node][d] : std::uint8_t{0};
-    }
-    return kind;
-  };
-  std::vector<Part> parts;
-  team.map(count, parts, [&](std::size_t begin, std::size_t end) {
-    Part part;
-    for (std::size_t node = begin; node < end; ++node) {
-      const Kind kind = kind_of(node);
-      part.end_count += static_cast<std::int32_t>(
-          std::ranges::count_if(kind, [](std::uint8_t length) { return length > 0; }));
-      const auto number = std::bit_cast<std::uint64_t>(kind);
-      if (std::ranges::find(part.kinds, number) == part.kinds.end()) {
-        part.kinds.push_back(number);
-      }
-    }
-    return part;
-  });
-  std::unordered_map<std::uint64_t, std::uint32_t> patterns;
-  std::int32_t end_count = 0;
-  for (Part& part : parts) {
-    end_count += std::exchange(part.end_count, end_count);
-    for (const std::uint64_t number : part.kinds) {
-      const auto [found, is_new] =
-          patterns.try_emplace(number, static_cast<std::uint32_t>(graph.springs.size()));
-      part.patterns.push_back(found->second);
-      const auto kind = std::bit_cast<Kind>(number);
-      for (std::size_t d = 0; is_new && d < base::kDirectionCount; ++d) {
-        if (kind[d] > 0) {
-          graph.springs.emplace_back(beam_spring(network_.lattice, material_, d, kind[d]));
-        }
-      }
-    }
-  }
-  graph.start.resize(count + 1);
-  graph.other.resize(at(end_count));
-  graph.pattern.resize(count);
-  team.share(0, count, [&](std::size_t begin, std::size_t end) {
-    std::int32_t next = parts[begin / Team::kChunk].end_count;
-    for (std::size_t node = begin; node < end; ++node) {
-      const Part& part = parts[node / Team::kChunk];
-      const Kind kind = kind_of(node);
-      for (std::size_t d = 0; d < base::kDirectionCount; ++d) {
-        if (kind[d] > 0) {
-          graph.other[at(next++)] = cubic.other[node][d];
-        }
-      }
-      graph.start[node + 1] = next;
-      const auto found = std::ranges::find(part.kinds, std::bit_cast<std::uint64_t>(kind));
-      graph.pattern[node] = part.patterns[static_cast<std::size_t>(found - part.kinds.begin())];
-    }
-  });
-}
-
-/// The springs of all other robots: the same for all nodes of one kind.
-template <class Real>
-void Hierarchy<Real>::connect_nodes(SpringGraph& graph) const {
+void Hierarchy<Real>::connect(Team& team, SpringGraph& graph) const {
   const LatticeBeams& beams = network_.beams;
-  graph.start = beams.start;
-  graph.other = beams.other;
-  if (!network_.has_long_beams) {
-    const auto none = static_cast<std::int32_t>(network_.node_count);
-    const auto direction_count = at(network_.lattice.direction_count);
-    graph.start.reserve(network_.node_count + 1);
-    graph.other.reserve(beams.end_count);
-    graph.start.push_back(0);
-    for (std::size_t node = 0; node < network_.node_count; ++node) {
-      const auto others =
-          std::span(beams.by_direction).subspan(direction_count * node, direction_count);
-      std::copy_if(others.begin(), others.end(), std::back_inserter(graph.other),
-                   [&](std::int32_t other) { return other != none; });
-      graph.start.push_back(static_cast<std::int32_t>(graph.other.size()));
-    }
-  }
   std::vector<std::uint32_t> pattern_of_kind;
-  for (const LatticeBeams::Lengths& lengths : beams.lengths) {
+  for (const BeamLengths& lengths : beams.lengths) {
     pattern_of_kind.push_back(static_cast<std::uint32_t>(graph.springs.size()));
     for (std::size_t d = 0; d < lengths.size(); ++d) {
       if (lengths[d] > 0) {
@@ -288,63 +200,34 @@ void Hierarchy<Real>::connect_nodes(SpringGraph& graph) const {
       }
     }
   }
-  graph.pattern.reserve(beams.kind.size());
-  for (const std::uint32_t kind : beams.kind) {
-    graph.pattern.push_back(pattern_of_kind[kind]);
+  pattern_of_kind.push_back(static_cast<std::uint32_t>(graph.springs.size()));
+  const std::size_t count = network_.node_count;
+  graph.start.assign(count + 1, 0);
+  graph.pattern.resize(count);
+  for (std::size_t node = 0; node < count; ++node) {
+    const std::uint32_t kind = beams.kind[node];
+    graph.pattern[node] = pattern_of_kind[kind];
+    graph.start[node + 1] =
+        graph.start[node] +
+        static_cast<std::int32_t>(pattern_of_kind[kind + 1] - pattern_of_kind[kind]);
   }
+  graph.other.resize(at(graph.start[count]));
+  const auto direction_count = at(network_.lattice.direction_count);
+  team.share(0, count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t node = begin; node < end; ++node) {
+      std::copy_if(beams.other.begin() + static_cast<std::ptrdiff_t>(direction_count * node),
+                   beams.other.begin() + static_cast<std::ptrdiff_t>(direction_count * (node + 1)),
+                   graph.other.begin() + graph.start[node],
+                   [&](std::int32_t other) { return at(other) != count; });
+    }
+  });
 }
 
 template <class Real>
 void Hierarchy<Real>::fill_graph(Team& team, ReducedNetwork& network, SpringGraph& graph) const {
   place_nodes(team, network, graph);
-  graph.is_cubic = network_.lattice == base::kCubic;
-  if (network_.is_cubic) {
-    connect_cubes(team, graph);
-  } else {
-    connect_nodes(graph);
-  }
-}
-
-template <class Real>
-void Hierarchy<Real>::make_lattice() {
-  make_beams();
-  Level<Real>& level = levels_.emplace_back();
-  level.node_count = network_.own_count;
-  level.place_count = network_.node_count;
-  level.colour_start = network_.colour_start;
-  add_types();
-  point_at_lattice();
-}
-
-/// What the facets of cubes on a floor add to K_pp.
-template <class Real>
-const Mat& Hierarchy<Real>::floor_tangent(std::uint8_t contact) const {
-  return ground_[base::index(base::down(base::kCubic))][contact];
-}
-
-/// K_pp of a node on the finest level.
-template <class Real>
-Mat Hierarchy<Real>::diagonal(const Kind& kind) const {
-  Mat sum;
-  for (std::size_t d = 0; d < 6; ++d) {
-    if (kind[d] > 0) {
-      base::add_to(
-          sum, long_beam(material_, network_.lattice, kind[d]).block_11(static_cast<Direction>(d)));
-    }
-  }
-  if (kind[kContactByte] != 0) {
-    base::add_to(sum, floor_tangent(kind[kContactByte]));
-  }
-  return sum;
-}
-
-/// Types of cubes are their kinds, with the same numbers.
-template <class Real>
-void Hierarchy<Real>::add_types() {
-  const std::vector<Kind>& kinds = network_.cubic.kind.list();
-  for (std::size_t i = levels_.front().inverse.size(); i < kinds.size(); ++i) {
-    add_type(kinds[i]);
-  }
+  graph.is_along_axes = network_.is_along_axes;
+  connect(team, graph);
 }
 
 /// K_pp by the nodes' springs, those to the ground left out.
@@ -375,10 +258,11 @@ void Hierarchy<Real>::add_level(const SpringGraph& graph, const Springs& springs
   level.node_count = graph.own_count();
   level.place_count = graph.order.size();
   level.colour_start = std::move(colour_start);
-  if (is_finest(level) && !network_.has_long_beams) {
-    level.stencil = make_stencil(network_, material_);
+  if (is_finest(level) && (network_.is_along_axes || !network_.has_long_beams)) {
+    level.stencil = make_stencil(network_, material_, std::is_same_v<Real, double>);
   }
-  if (std::is_same_v<Real, double> || level.stencil.other == nullptr) {
+  const bool has_springs = std::is_same_v<Real, double> && !level.stencil.is_along_axes();
+  if (has_springs || level.stencil.other == nullptr) {
     level.start = graph.start;
     level.other = graph.other;
   }
@@ -435,11 +319,18 @@ template <class Springs>
 typename Hierarchy<Real>::Held Hierarchy<Real>::held_nodes(const SpringGraph& graph,
                                                            const Springs& springs) const {
   Held held;
-  held.free_type_count = levels_.back().inverse.size();
+  const Level<Real>& level = levels_.back();
+  held.free_type_count = level.inverse.size();
+  std::unordered_map<std::uint32_t, std::size_t> sum_of_type;
   for (std::size_t i = 0; i < springs.size(); ++i) {
     const std::size_t node = at(springs[i].node);
     if (held.nodes.empty() || held.nodes.back().node != node) {
-      held.nodes.push_back({.node = node, .spring_sum = spring_sum(graph, node)});
+      const auto [found, is_new] =
+          sum_of_type.try_emplace(level.type[node], held.spring_sums.size());
+      if (is_new) {
+        held.spring_sums.push_back(spring_sum(graph, node));
+      }
+      held.nodes.push_back({.node = node, .spring_sum = found->second});
     }
   }
   return held;
@@ -462,7 +353,7 @@ void Hierarchy<Real>::set_ground_springs(std::size_t depth, const Springs& sprin
     for (; next < springs.size() && at(springs[next].node) == node.node; ++next) {
       base::add_to(sum.ground, springs[next].stiffness);
     }
-    sum.all = node.spring_sum;
+    sum.all = held.spring_sums[node.spring_sum];
     base::add_to(sum.all, sum.ground);
     if (is_coarsest) {
       held.sums.push_back(sum.all);
@@ -491,26 +382,11 @@ bool Hierarchy<Real>::factor_coarsest() {
   return coarsest_->factor();
 }
 
-/// Only what is on the ground may be held by nothing.
-template <class Real>
-void Hierarchy<Real>::look_for_singular_nodes() {
-  const Level<Real>& finest = levels_.front();
-  is_singular_ = std::ranges::any_of(network_.ground_beams, [&](const GroundBeam& beam) {
-    return is_zero(finest.inverse[network_.cubic.kind.number(at(beam.node))]);
-  });
-}
-
 template <class Real>
 void Hierarchy<Real>::update_contact() {
   const FinestGroundSprings finest(network_, material_, ground_);
-  if (network_.is_cubic) {
-    add_types();
-    look_for_singular_nodes();
-    point_at_lattice();
-  } else {
-    is_singular_ = false;
-    set_ground_springs(0, finest);
-  }
+  is_singular_ = false;
+  set_ground_springs(0, finest);
   std::vector<GroundSpring> springs;
   for (std::size_t depth = 1; depth < levels_.size(); ++depth) {
     const Seats<Real>& seat = levels_[depth - 1].seat;
@@ -562,13 +438,7 @@ Hierarchy<Real>::Hierarchy(ReducedNetwork& network, const model::Material& mater
     graph.is_alone[at(node)] = true;
   }
   const FinestGroundSprings finest(network_, material_, ground_);
-  if (network_.is_cubic) {
-    make_lattice();
-    held_.emplace_back();
-    look_for_singular_nodes();
-  } else {
-    add_level(graph, finest, network_.colour_start);
-  }
+  add_level(graph, finest, network_.colour_start);
   std::vector<GroundSpring> springs;
   share(graph, levels_.front());
   while (!coarsest_ && (levels_.size() == 1 || graph.is_part() ||

@@ -27,26 +27,6 @@
 /// corrections are too small [Braess 1995].
 namespace holdfast::solver {
 
-/// The finest level's beams of cubes on a floor, and what its types of nodes have besides an
-/// inverse.
-template <class Real>
-struct Beams;
-
-template <>
-struct Beams<float> {
-  std::vector<BeamRow<float>> rows;  ///< K12 by direction and length.
-  std::vector<BeamRow<double>> rows_double;
-  std::vector<Block<float>> diagonal;  ///< K_pp
-  std::vector<Block<double>> diagonal_double;
-};
-
-template <>
-struct Beams<double> {
-  std::vector<BeamRow<float>> rows;   ///< As above.
-  std::vector<MiddleSpring> springs;  ///< By axis and length.
-  std::vector<Block<double>> ground;  ///< What the contact adds to K_pp.
-};
-
 template <class Real>
 class Hierarchy {
  public:
@@ -72,9 +52,6 @@ class Hierarchy {
     vectors_ = {};
   }
 
-  /// Whether a level has the kernels of cubes on a floor; only the finest may.
-  bool is_cubic(std::size_t depth) const { return depth == 0 && network_.is_cubic; }
-
   /// Who shares a level, each with a part.
   host::Ranks& ranks(std::size_t depth) const {
     return depth < gathered_depth_ ? network_.ranks.get() : host::single_rank();
@@ -96,28 +73,19 @@ class Hierarchy {
 
   /// q = K p on the finest level, in double precision; returns p . q.
   double apply(const Six<Real>* p, double* q, const Range& range) const {
-    return network_.is_cubic ? kernels<Real>().apply_lattice(lattice_, p, q, range)
-                             : kernels<Real>().apply_finest(levels_.front().view(), p, q, range);
+    return kernels<Real>().apply_finest(levels_.front().view(), p, q, range);
   }
 
   /// z . K z and p . K z there.
   std::array<double, 2> compare(const Six<Real>* z, const Six<Real>* p, const Range& range) const {
-    return network_.is_cubic ? kernels<Real>().compare_lattice(lattice_, z, p, range)
-                             : kernels<Real>().compare_finest(levels_.front().view(), z, p, range);
+    return kernels<Real>().compare_finest(levels_.front().view(), z, p, range);
   }
 
   /// x += step p, r -= step K p there; returns p . K p.
   double advance(double step, const Six<Real>* p, double* x, SplitView<Real> r,
                  const Range& range) const {
-    return network_.is_cubic
-               ? kernels<Real>().advance_lattice(lattice_, step, p, x, r, range)
-               : kernels<Real>().advance_finest(levels_.front().view(), step, p, x, r, range);
+    return kernels<Real>().advance_finest(levels_.front().view(), step, p, x, r, range);
   }
-
-  const LatticeView<Real>& lattice() const { return lattice_; }
-
-  /// What the sweeps need.
-  const LatticeView<float>& block_lattice() const { return block_lattice_; }
 
   /// False if the finest level is the only one, or clusters stopped growing early.
   bool has_coarsest() const { return coarsest_.has_value(); }
@@ -134,7 +102,7 @@ class Hierarchy {
  private:
   struct HeldNode {
     std::size_t node = 0;
-    Mat spring_sum;  ///< K_pp without ground springs.
+    std::size_t spring_sum = 0;  ///< Index of its K_pp without ground springs.
   };
 
   /// K_pp of a node that has ground springs.
@@ -147,28 +115,21 @@ class Hierarchy {
   struct Held {
     std::size_t free_type_count = 0;
     std::vector<HeldNode> nodes;
+    std::vector<Mat> spring_sums;
     std::vector<Mat> sums;  ///< Their K_pp; of the coarsest level alone.
   };
 
   bool is_finest(const Level<Real>& level) const { return &level == levels_.data(); }
 
-  void make_lattice();
-  void make_beams();
-  void point_at_lattice();
-  void add_types();
-  const Mat& floor_tangent(std::uint8_t contact) const;
   void fill_graph(Team& team, ReducedNetwork& network, SpringGraph& graph) const;
   void place_nodes(Team& team, ReducedNetwork& network, SpringGraph& graph) const;
-  void connect_cubes(Team& team, SpringGraph& graph) const;
-  void connect_nodes(SpringGraph& graph) const;
+  void connect(Team& team, SpringGraph& graph) const;
   void share(const SpringGraph& graph, Level<Real>& level) const;
   void gather(SpringGraph& graph, std::vector<GroundSpring>& springs,
               std::vector<std::size_t>& colour_start);
   template <class Springs>
   void add_level(const SpringGraph& graph, const Springs& springs,
                  std::vector<std::size_t> colour_start);
-  Mat diagonal(const Kind& kind) const;
-  void add_type(const Kind& kind);
   void couple(const SpringGraph& graph, Level<Real>& level) const;
   void clear_ground(Level<Real>& level, std::size_t free_type_count) const;
   void add_grounded_type(Level<Real>& level, const HeldSum& sum) const;
@@ -178,7 +139,6 @@ class Hierarchy {
   Held held_nodes(const SpringGraph& graph, const Springs& springs) const;
   template <class Springs>
   void set_ground_springs(std::size_t depth, const Springs& springs);
-  void look_for_singular_nodes();
   void try_to_factor(const SpringGraph& graph);
   bool factor_coarsest();
 
@@ -190,22 +150,13 @@ class Hierarchy {
   std::size_t gathered_depth_ = std::numeric_limits<std::size_t>::max();
   std::vector<Level<Real>> levels_;
   CycleVectors<Real> vectors_;
-  std::vector<Held> held_;  ///< By level; not filled in where is_cubic().
-  LatticeView<Real> lattice_;
-  LatticeView<float> block_lattice_;
-  Beams<Real> beams_;
+  std::vector<Held> held_;  ///< By level.
   std::optional<BlockLu> coarsest_;
   bool is_too_slender_ = false;
   bool is_singular_ = false;
 };
 
 // In hierarchy_single.cpp and hierarchy_double.cpp.
-template <>
-void Hierarchy<float>::make_beams();
-template <>
-void Hierarchy<float>::add_type(const Kind& kind);
-template <>
-void Hierarchy<float>::point_at_lattice();
 template <>
 void Hierarchy<float>::couple(const SpringGraph& graph, Level<float>& level) const;
 template <>
@@ -216,12 +167,6 @@ template <>
 void Hierarchy<float>::add_type(Level<float>& level, const Mat& sum) const;
 template <>
 void Hierarchy<double>::add_type(Level<double>& level, const Mat& sum) const;
-template <>
-void Hierarchy<double>::make_beams();
-template <>
-void Hierarchy<double>::add_type(const Kind& kind);
-template <>
-void Hierarchy<double>::point_at_lattice();
 template <>
 void Hierarchy<double>::couple(const SpringGraph& graph, Level<double>& level) const;
 template <>

@@ -16,33 +16,6 @@ namespace holdfast::solver {
 namespace {
 
 using base::at;
-using base::Direction;
-
-/// How stiff a beam is against what its middle sees. K12 has that but for the share of the shear
-/// force in bending: -k + shear * (length/2)^2.
-Eight<double> middle_stiffness(const Mat& k12, std::size_t axis, double length) {
-  Eight<double> stiffness;
-  for (std::size_t i = 0; i < 6; ++i) {
-    stiffness.v[i] = -k12.at(static_cast<int>(i), static_cast<int>(i));
-  }
-  for (std::size_t i = 3; i < 6; ++i) {
-    const std::size_t sheared = kSwap[axis][i];
-    stiffness.v[i] += sheared == i ? 0 : stiffness.v[sheared] * length * length / 4;
-  }
-  return stiffness;
-}
-
-MiddleSpring middle_spring(const Mat& k12, std::size_t axis, double length) {
-  MiddleSpring spring;
-  spring.stiffness = middle_stiffness(k12, axis, length);
-  const std::size_t next = (axis + 1) % 3;
-  const std::size_t last = (axis + 2) % 3;
-  spring.shift[next] = length / 2;
-  spring.shift[last] = -length / 2;
-  spring.torque.v[3 + next] = length / 2;
-  spring.torque.v[3 + last] = -length / 2;
-  return spring;
-}
 
 BodySpring body_spring(const Spring& spring) {
   return {.stiffness = block_of<double>(spring.stiffness),
@@ -61,7 +34,7 @@ void follow_lower_ranks(const ReducedNetwork& network, const model::Material& ma
   std::map<std::pair<std::size_t, std::size_t>, std::uint32_t> known;
   std::vector<BodySpring>& springs = level.couplings.springs;
   for (std::size_t node = 0; node < network.own_count; ++node) {
-    const LatticeBeams::Lengths& lengths = network.beams.lengths[network.beams.kind[node]];
+    const BeamLengths& lengths = network.beams.lengths[network.beams.kind[node]];
     auto e = at(level.start[node]);
     for (std::size_t d = 0; d < lengths.size(); ++d) {
       if (lengths[d] == 0) {
@@ -84,44 +57,10 @@ void follow_lower_ranks(const ReducedNetwork& network, const model::Material& ma
 }  // namespace
 
 template <>
-void Hierarchy<double>::make_beams() {
-  beams_.rows = single(beam_rows(network_, material_));
-  beams_.springs.resize(3 * kRow);
-  for (std::size_t length = 1; length < kRow; ++length) {
-    const auto beam = long_beam(material_, network_.lattice, static_cast<int>(length));
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      beams_.springs[axis * kRow + length] =
-          middle_spring(beam.block_12(static_cast<Direction>(2 * axis)), axis,
-                        material_.pitch_mm * static_cast<double>(length));
-    }
-  }
-}
-
-template <>
-void Hierarchy<double>::add_type(const Kind& kind) {
-  levels_.front().inverse.push_back(inverse_block(diagonal(kind)));
-  const std::uint8_t contact = kind[kContactByte];
-  beams_.ground.push_back(contact == 0 ? Block<double>{}
-                                       : block_of<double>(floor_tangent(contact)));
-}
-
-template <>
-void Hierarchy<double>::point_at_lattice() {
-  const Level<double>& level = levels_.front();
-  lattice_ = {.other = network_.cubic.other.data(),
-              .kind = network_.cubic.kind.list().data(),
-              .type = network_.cubic.kind.numbers(),
-              .springs = beams_.springs.data(),
-              .ground = beams_.ground.data()};
-  block_lattice_ = {.other = network_.cubic.other.data(),
-                    .kind = network_.has_long_beams ? network_.cubic.kind.list().data() : nullptr,
-                    .type = network_.cubic.kind.numbers(),
-                    .inverse = level.inverse.data(),
-                    .beams = beams_.rows.data()};
-}
-
-template <>
 void Hierarchy<double>::couple(const SpringGraph& graph, Level<double>& level) const {
+  if (level.stencil.is_along_axes()) {
+    return;
+  }
   if (level.stencil.other == nullptr) {
     fill_blocks(graph, level.couplings.blocks);
   }

@@ -8,34 +8,6 @@
 namespace holdfast::solver {
 
 template <>
-void Hierarchy<float>::make_beams() {
-  beams_.rows_double = beam_rows(network_, material_);
-  beams_.rows = single(beams_.rows_double);
-}
-
-template <>
-void Hierarchy<float>::add_type(const Kind& kind) {
-  const Mat sum = diagonal(kind);
-  levels_.front().inverse.push_back(inverse_block(sum));
-  beams_.diagonal.push_back(block_of<float>(sum));
-  beams_.diagonal_double.push_back(block_of<double>(sum));
-}
-
-template <>
-void Hierarchy<float>::point_at_lattice() {
-  const Level<float>& level = levels_.front();
-  lattice_ = {.other = network_.cubic.other.data(),
-              .kind = network_.has_long_beams ? network_.cubic.kind.list().data() : nullptr,
-              .type = network_.cubic.kind.numbers(),
-              .inverse = level.inverse.data(),
-              .beams = beams_.rows.data(),
-              .diagonal = beams_.diagonal.data(),
-              .beams_double = beams_.rows_double.data(),
-              .diagonal_double = beams_.diagonal_double.data()};
-  block_lattice_ = lattice_;
-}
-
-template <>
 void Hierarchy<float>::couple(const SpringGraph& graph, Level<float>& level) const {
   if (level.stencil.other == nullptr) {
     fill_blocks(graph, level.couplings.blocks,

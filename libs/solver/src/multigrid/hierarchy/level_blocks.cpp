@@ -31,10 +31,6 @@ Eight<float> single(const Eight<double>& six) {
   return result;
 }
 
-BeamRow<float> single(const BeamRow<double>& row) {
-  return {.direct = single(row.direct), .crossed = single(row.crossed)};
-}
-
 PairRow<double> pair_row(const Mat& k12) {
   PairRow<double> row;
   for (int k = 0; k < 3; ++k) {
@@ -56,40 +52,75 @@ PairRow<float> single(const PairRow<double>& row) {
   return result;
 }
 
-}  // namespace
+/// How stiff a beam is against what its middle sees. K12 has that but for the share of the shear
+/// force in bending: -k + shear * (length/2)^2.
+Eight<double> middle_stiffness(const Mat& k12, std::size_t axis, double length) {
+  Eight<double> stiffness;
+  for (std::size_t i = 0; i < 6; ++i) {
+    stiffness.v[i] = -k12.at(static_cast<int>(i), static_cast<int>(i));
+  }
+  for (std::size_t i = 3; i < 6; ++i) {
+    const std::size_t sheared = kSwap[axis][i];
+    stiffness.v[i] += sheared == i ? 0 : stiffness.v[sheared] * length * length / 4;
+  }
+  return stiffness;
+}
 
-std::vector<BeamRow<double>> beam_rows(const ReducedNetwork& network,
-                                       const model::Material& material) {
+MiddleSpring middle_spring(const Mat& k12, std::size_t axis, double length) {
+  MiddleSpring spring;
+  spring.stiffness = middle_stiffness(k12, axis, length);
+  const std::size_t next = (axis + 1) % 3;
+  const std::size_t last = (axis + 2) % 3;
+  spring.shift[next] = length / 2;
+  spring.shift[last] = -length / 2;
+  spring.torque.v[3 + next] = length / 2;
+  spring.torque.v[3 + last] = -length / 2;
+  return spring;
+}
+
+/// K12 along the axes, by direction and length, and springs by axis and length.
+void add_axes(const ReducedNetwork& network, const model::Material& material, bool has_springs,
+              Stencil& stencil) {
+  stencil.beams.resize(6 * kRow);
+  stencil.beams_double.resize(6 * kRow);
+  stencil.springs.resize(has_springs ? 3 * kRow : 0);
   const std::size_t length_max = network.has_long_beams ? kBeamLengthMax : 1;
-  std::vector<BeamRow<double>> rows(6 * kRow);
   for (std::size_t length = 1; length <= length_max; ++length) {
     const auto beam = long_beam(material, network.lattice, static_cast<int>(length));
     for (std::size_t d = 0; d < 6; ++d) {
-      rows[d * kRow + length] = beam_row(beam.block_12(static_cast<Direction>(d)), d / 2);
+      const Mat k12 = beam.block_12(static_cast<Direction>(d));
+      const std::size_t place = d * kRow + length;
+      stencil.beams_double[place] = beam_row(k12, d / 2);
+      stencil.beams[place] = {.direct = single(stencil.beams_double[place].direct),
+                              .crossed = single(stencil.beams_double[place].crossed)};
+      if (has_springs && d % 2 == 0) {
+        stencil.springs[d / 2 * kRow + length] =
+            middle_spring(k12, d / 2, material.pitch_mm * static_cast<double>(length));
+      }
     }
   }
-  return rows;
 }
 
-Stencil make_stencil(const ReducedNetwork& network, const model::Material& material) {
-  Stencil stencil;
-  const auto beam = long_beam(material, network.lattice, 1);
+}  // namespace
+
+Stencil make_stencil(const ReducedNetwork& network, const model::Material& material,
+                     bool has_springs) {
   const auto direction_count = at(network.lattice.direction_count);
+  Stencil stencil = {.other = network.beams.other.data(),
+                     .pair_count = direction_count / 2,
+                     .has_long_beams = network.has_long_beams,
+                     .kind = network.beams.kind.data(),
+                     .lengths = network.beams.lengths.data()};
+  if (network.is_along_axes) {
+    add_axes(network, material, has_springs, stencil);
+    return stencil;
+  }
+  const auto beam = long_beam(material, network.lattice, 1);
   for (std::size_t d = 0; d < direction_count; d += 2) {
     stencil.rows_double.push_back(pair_row(beam.block_12(static_cast<Direction>(d))));
     stencil.rows.push_back(single(stencil.rows_double.back()));
   }
-  stencil.other = network.beams.by_direction.data();
   return stencil;
-}
-
-std::vector<BeamRow<float>> single(const std::vector<BeamRow<double>>& rows) {
-  std::vector<BeamRow<float>> result;
-  result.reserve(rows.size());
-  for (const BeamRow<double>& row : rows) {
-    result.push_back(single(row));
-  }
-  return result;
 }
 
 void fill_blocks(const SpringGraph& graph, Blocks& blocks, std::vector<Block<double>>* wide) {

@@ -12,14 +12,10 @@
 /// The blocks of K that sweeps read, in single precision whatever the levels are.
 namespace holdfast::solver {
 
-/// K12 by direction and length: [direction * (kBeamLengthMax + 1) + length].
-std::vector<BeamRow<double>> beam_rows(const ReducedNetwork& network,
-                                       const model::Material& material);
-
-/// The beams of a network that has none but short ones.
-Stencil make_stencil(const ReducedNetwork& network, const model::Material& material);
-
-std::vector<BeamRow<float>> single(const std::vector<BeamRow<double>>& rows);
+/// The beams of a network along the axes, or of any that has none but short ones; `has_springs`:
+/// as springs, too. Keeps pointers to the network's vectors.
+Stencil make_stencil(const ReducedNetwork& network, const model::Material& material,
+                     bool has_springs);
 
 /// K_pq for every edge; if asked for in double precision as well, of a level on which no two
 /// different ones are equal in single precision.

@@ -10,24 +10,24 @@ namespace holdfast::solver {
 namespace {
 
 template <int kAxis>
-inline Single axis_sum(const LatticeView<float>& level, const Six<float>* z, std::size_t p) {
-  const Others& other = level.other[p];
+inline Single axis_sum(const AxesView<float>& level, const Six<float>* z, std::size_t p) {
+  const std::int32_t* const other = level.stencil.other + 6 * p;
   const Single plus = load(z[other[2 * kAxis]]);
   const Single minus = load(z[other[2 * kAxis + 1]]);
   constexpr int kRow = kBeamLengthMax + 1;
-  if (level.kind == nullptr) {
-    const BeamRow<float>& beam = level.beams[2 * kAxis * kRow + 1];
+  if (level.stencil.kind == nullptr) {
+    const BeamRow<float>& beam = level.stencil.beams[2 * kAxis * kRow + 1];
     return load(beam.direct) * (plus + minus) + load(beam.crossed) * swap<kAxis>(plus - minus);
   }
-  const Kind& kind = level.kind[level.type[p]];
-  const BeamRow<float>& up = level.beams[2 * kAxis * kRow + kind[2 * kAxis]];
-  const BeamRow<float>& down = level.beams[(2 * kAxis + 1) * kRow + kind[2 * kAxis + 1]];
+  const BeamLengths& length = level.stencil.lengths[level.stencil.kind[p]];
+  const BeamRow<float>& up = level.stencil.beams[2 * kAxis * kRow + length[2 * kAxis]];
+  const BeamRow<float>& down = level.stencil.beams[(2 * kAxis + 1) * kRow + length[2 * kAxis + 1]];
   return load(up.direct) * plus + load(up.crossed) * swap<kAxis>(plus) +
          (load(down.direct) * minus + load(down.crossed) * swap<kAxis>(minus));
 }
 
 /// Sum of K_pq z_q.
-inline Single neighbour_sum(const LatticeView<float>& level, const Six<float>* z, std::size_t p) {
+inline Single neighbour_sum(const AxesView<float>& level, const Six<float>* z, std::size_t p) {
   return axis_sum<0>(level, z, p) + axis_sum<1>(level, z, p) + axis_sum<2>(level, z, p);
 }
 
@@ -52,7 +52,7 @@ inline Single neighbour_sum(const ClusterView<float>& level, const Six<float>* z
 }
 
 /// Asks the memory for what a node's forces take, nodes before its turn: along the Morton curve no
-/// processor foresees where the neighbours lie. Those of cubes come in time by themselves.
+/// processor foresees where the neighbours lie. Those along the axes come in time by themselves.
 template <class View, class Real>
 inline void foresee(const View&, const Six<Real>*, std::size_t) {}
 
@@ -100,24 +100,25 @@ inline Wide widened(const Six<float>& six) {
 
 /// What the two neighbours on an axis contribute.
 template <int kAxis>
-inline Wide wide_axis_sum(const LatticeView<float>& level, const Six<float>* p, std::size_t node) {
+inline Wide wide_axis_sum(const AxesView<float>& level, const Six<float>* p, std::size_t node) {
   constexpr int kRow = kBeamLengthMax + 1;
-  const Others& other = level.other[node];
+  const std::int32_t* const other = level.stencil.other + 6 * node;
   const Wide plus = widened(p[other[2 * kAxis]]);
   const Wide minus = widened(p[other[2 * kAxis + 1]]);
-  if (level.kind == nullptr) {
-    const BeamRow<double>& beam = level.beams_double[2 * kAxis * kRow + 1];
+  if (level.stencil.kind == nullptr) {
+    const BeamRow<double>& beam = level.stencil.beams_double[2 * kAxis * kRow + 1];
     return load(beam.direct) * (plus + minus) + load(beam.crossed) * swap<kAxis>(plus - minus);
   }
-  const Kind& kind = level.kind[level.type[node]];
-  const BeamRow<double>& up = level.beams_double[2 * kAxis * kRow + kind[2 * kAxis]];
-  const BeamRow<double>& down = level.beams_double[(2 * kAxis + 1) * kRow + kind[2 * kAxis + 1]];
+  const BeamLengths& length = level.stencil.lengths[level.stencil.kind[node]];
+  const BeamRow<double>& up = level.stencil.beams_double[2 * kAxis * kRow + length[2 * kAxis]];
+  const BeamRow<double>& down =
+      level.stencil.beams_double[(2 * kAxis + 1) * kRow + length[2 * kAxis + 1]];
   return load(up.direct) * plus + load(up.crossed) * swap<kAxis>(plus) +
          (load(down.direct) * minus + load(down.crossed) * swap<kAxis>(minus));
 }
 
 /// (K p)_node of the finest level, in double precision.
-inline Wide wide_product(const LatticeView<float>& level, const Six<float>* p, std::size_t node) {
+inline Wide wide_product(const AxesView<float>& level, const Six<float>* p, std::size_t node) {
   Wide sum = wide_axis_sum<0>(level, p, node) + wide_axis_sum<1>(level, p, node) +
              wide_axis_sum<2>(level, p, node);
   const Block<double>& diagonal = level.diagonal_double[level.type[node]];

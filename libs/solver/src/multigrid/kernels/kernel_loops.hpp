@@ -24,32 +24,37 @@ inline void relax_first(const std::uint32_t* type, const Block<float>* inverse, 
 constexpr std::size_t kAhead = 16;
 constexpr std::size_t kAheadByColour = 8;
 
-template <class View>
-void relax(const View& level, const Six<float>* r, Six<float>* z, Range range) {
-  for (std::size_t p = range.begin; p < range.end; ++p) {
-    foresee(level, z, std::min(p + kAhead, range.end - 1));
-    store(z[p], balanced(level, r, z, p));
-  }
+inline void relax(const ClusterView<float>& cluster, const Six<float>* r, Six<float>* z,
+                  Range range) {
+  with_shape(cluster, [&](const auto& level) {
+    for (std::size_t p = range.begin; p < range.end; ++p) {
+      foresee(level, z, std::min(p + kAhead, range.end - 1));
+      store(z[p], balanced(level, r, z, p));
+    }
+  });
 }
 
-template <class Real, class View>
-void restrict_to(const View& level, const TransferView<Real>& transfer, std::size_t settled,
-                 const Six<Real>* r, const Six<float>* z, Six<Real>* coarse, Range clusters) {
-  for (std::size_t k = clusters.begin; k < clusters.end; ++k) {
-    decltype(load(r[0])) sum = {};
-    for (std::int32_t i = transfer.start[k]; i < transfer.start[k + 1]; ++i) {
-      const auto p = static_cast<std::size_t>(transfer.member[i]);
-      if (p < settled) {
-        const std::size_t next = std::min(p + kAheadByColour, settled - 1);
-        foresee(level, z, next);
-        __builtin_prefetch(&z[next]);
-        __builtin_prefetch(&r[next]);
-        __builtin_prefetch(&transfer.seat[next]);
-        sum += force_moved(transfer.offset_of(p), unbalanced(level, r, z, p));
+template <class Real>
+void restrict_to(const ClusterView<Real>& cluster, const TransferView<Real>& transfer,
+                 std::size_t settled, const Six<Real>* r, const Six<float>* z, Six<Real>* coarse,
+                 Range clusters) {
+  with_shape(cluster, [&](const auto& level) {
+    for (std::size_t k = clusters.begin; k < clusters.end; ++k) {
+      decltype(load(r[0])) sum = {};
+      for (std::int32_t i = transfer.start[k]; i < transfer.start[k + 1]; ++i) {
+        const auto p = static_cast<std::size_t>(transfer.member[i]);
+        if (p < settled) {
+          const std::size_t next = std::min(p + kAheadByColour, settled - 1);
+          foresee(level, z, next);
+          __builtin_prefetch(&z[next]);
+          __builtin_prefetch(&r[next]);
+          __builtin_prefetch(&transfer.seat[next]);
+          sum += force_moved(transfer.offset_of(p), unbalanced(level, r, z, p));
+        }
       }
+      store(coarse[transfer.seat[transfer.member[transfer.start[k]]].cluster], sum);
     }
-    store(coarse[transfer.seat[transfer.member[transfer.start[k]]].cluster], sum);
-  }
+  });
 }
 
 template <class Real>
@@ -76,13 +81,14 @@ inline void prolong_rough(const TransferView<double>& transfer, const Six<double
   }
 }
 
-template <class View>
-void leave(const View& level, const Six<double>* r, const Six<double>* z, Six<float>* rounded,
-           Range range) {
-  for (std::size_t p = range.begin; p < range.end; ++p) {
-    const Wide left = unbalanced(level, r, z, p);
-    store_rounded(rounded[p], left.low, left.high);
-  }
+inline void leave(const ClusterView<double>& cluster, const Six<double>* r, const Six<double>* z,
+                  Six<float>* rounded, Range range) {
+  with_shape(cluster, [&](const auto& level) {
+    for (std::size_t p = range.begin; p < range.end; ++p) {
+      const Wide left = unbalanced(level, r, z, p);
+      store_rounded(rounded[p], left.low, left.high);
+    }
+  });
 }
 
 inline double sum_of(Double dots) { return (dots[0] + dots[1]) + (dots[2] + dots[3]); }
@@ -98,55 +104,61 @@ inline double add(const Six<float>* rough, const Six<double>* r, Six<double>* z,
   return sum_of(dots);
 }
 
-template <class Real, class View>
-double apply(const View& level, const Six<Real>* p, double* q, Range range) {
-  Double dots = {};
-  for (std::size_t node = range.begin; node < range.end; ++node) {
-    foresee(level, p, std::min(node + kAhead, range.end - 1));
-    const auto u = load(p[node]);
-    const Wide sum = wide_product(level, p, node);
-    std::memcpy(q + 6 * node, &sum.low, 32);
-    std::memcpy(q + 6 * node + 4, &sum.high, 16);
-    dots += low(u) * sum.low + high(u) * sum.high;
-  }
-  return sum_of(dots);
+template <class Real>
+double apply(const ClusterView<Real>& cluster, const Six<Real>* p, double* q, Range range) {
+  return with_shape(cluster, [&](const auto& level) {
+    Double dots = {};
+    for (std::size_t node = range.begin; node < range.end; ++node) {
+      foresee(level, p, std::min(node + kAhead, range.end - 1));
+      const auto u = load(p[node]);
+      const Wide sum = wide_product(level, p, node);
+      std::memcpy(q + 6 * node, &sum.low, 32);
+      std::memcpy(q + 6 * node + 4, &sum.high, 16);
+      dots += low(u) * sum.low + high(u) * sum.high;
+    }
+    return sum_of(dots);
+  });
 }
 
-template <class Real, class View>
-std::array<double, 2> compare(const View& level, const Six<Real>* z, const Six<Real>* p,
-                              Range range) {
-  Double own = {};
-  Double other = {};
-  for (std::size_t node = range.begin; node < range.end; ++node) {
-    foresee(level, z, std::min(node + kAhead, range.end - 1));
-    const auto u = load(z[node]);
-    const auto v = load(p[node]);
-    const Wide sum = wide_product(level, z, node);
-    own += low(u) * sum.low + high(u) * sum.high;
-    other += low(v) * sum.low + high(v) * sum.high;
-  }
-  return {sum_of(own), sum_of(other)};
+template <class Real>
+std::array<double, 2> compare(const ClusterView<Real>& cluster, const Six<Real>* z,
+                              const Six<Real>* p, Range range) {
+  return with_shape(cluster, [&](const auto& level) {
+    Double own = {};
+    Double other = {};
+    for (std::size_t node = range.begin; node < range.end; ++node) {
+      foresee(level, z, std::min(node + kAhead, range.end - 1));
+      const auto u = load(z[node]);
+      const auto v = load(p[node]);
+      const Wide sum = wide_product(level, z, node);
+      own += low(u) * sum.low + high(u) * sum.high;
+      other += low(v) * sum.low + high(v) * sum.high;
+    }
+    return std::array{sum_of(own), sum_of(other)};
+  });
 }
 
-template <class Real, class View>
-double advance_by_product(const View& level, double step, const Six<Real>* p, double* x,
-                          SplitView<Real> r, Range range) {
-  const Double factor = {step, step, step, step};
-  Double dots = {};
-  for (std::size_t node = range.begin; node < range.end; ++node) {
-    foresee(level, p, std::min(node + kAhead, range.end - 1));
-    const auto u = load(p[node]);
-    const Wide sum = wide_product(level, p, node);
-    dots += low(u) * sum.low + high(u) * sum.high;
-    const std::size_t i = 6 * node;
-    const Wide left = load(r, node);
-    const Double x_low = load_double(x + i) + factor * low(u);
-    const Double x_high = load_high(x + i + 4) + factor * high(u);
-    std::memcpy(x + i, &x_low, 32);
-    std::memcpy(x + i + 4, &x_high, 16);
-    store(r, node, Wide{left.low - factor * sum.low, left.high - factor * sum.high});
-  }
-  return sum_of(dots);
+template <class Real>
+double advance_by_product(const ClusterView<Real>& cluster, double step, const Six<Real>* p,
+                          double* x, SplitView<Real> r, Range range) {
+  return with_shape(cluster, [&](const auto& level) {
+    const Double factor = {step, step, step, step};
+    Double dots = {};
+    for (std::size_t node = range.begin; node < range.end; ++node) {
+      foresee(level, p, std::min(node + kAhead, range.end - 1));
+      const auto u = load(p[node]);
+      const Wide sum = wide_product(level, p, node);
+      dots += low(u) * sum.low + high(u) * sum.high;
+      const std::size_t i = 6 * node;
+      const Wide left = load(r, node);
+      const Double x_low = load_double(x + i) + factor * low(u);
+      const Double x_high = load_high(x + i + 4) + factor * high(u);
+      std::memcpy(x + i, &x_low, 32);
+      std::memcpy(x + i + 4, &x_high, 16);
+      store(r, node, Wide{left.low - factor * sum.low, left.high - factor * sum.high});
+    }
+    return sum_of(dots);
+  });
 }
 
 template <class Real>
@@ -219,29 +231,20 @@ void combine(Real factor, const Six<Real>* x, Real other, Six<Real>* y, Range ra
   }
 }
 
-constexpr Sweeps kSweeps = {.relax_first = relax_first,
-                            .relax_lattice = relax<LatticeView<float>>,
-                            .relax_cluster = relax<ClusterView<float>>};
+constexpr Sweeps kSweeps = {.relax_first = relax_first, .relax = relax};
 
-constexpr Rounding kRounding = {.round = round,
-                                .prolong = prolong_rough,
-                                .leave_lattice = leave<LatticeView<double>>,
-                                .leave_cluster = leave<ClusterView<double>>,
-                                .add = add};
+constexpr Rounding kRounding = {
+    .round = round, .prolong = prolong_rough, .leave = leave, .add = add};
 
 template <class Real>
-constexpr Kernels<Real> kAll = {.restrict_lattice = restrict_to<Real, LatticeView<Real>>,
-                                .restrict_cluster = restrict_to<Real, ClusterView<Real>>,
+constexpr Kernels<Real> kAll = {.restrict_to = restrict_to<Real>,
                                 .prolong = prolong<Real>,
                                 .apply_cluster = apply_cluster<Real>,
                                 .dot_same = dot_same<Real>,
                                 .combine = combine<Real>,
-                                .apply_lattice = apply<Real, LatticeView<Real>>,
-                                .apply_finest = apply<Real, ClusterView<Real>>,
-                                .compare_lattice = compare<Real, LatticeView<Real>>,
-                                .compare_finest = compare<Real, ClusterView<Real>>,
-                                .advance_lattice = advance_by_product<Real, LatticeView<Real>>,
-                                .advance_finest = advance_by_product<Real, ClusterView<Real>>,
+                                .apply_finest = apply<Real>,
+                                .compare_finest = compare<Real>,
+                                .advance_finest = advance_by_product<Real>,
                                 .advance = advance<Real>,
                                 .dot = dot<Real>,
                                 .dot_split = dot_split<Real>};

@@ -18,43 +18,25 @@ namespace holdfast::solver {
 /// Longest beam, pitches; longer straight runs keep nodes in between.
 inline constexpr int kBeamLengthMax = 32;
 
-/// The nodes and beams of cubes on a floor as the kernels see them.
-template <class Real>
-struct LatticeView;
-
-/// With blocks of K.
-template <>
-struct LatticeView<float> {
-  const Others* other = nullptr;
-  const Kind* kind = nullptr;              ///< By type; null if every beam is one pitch long.
-  const std::uint32_t* type = nullptr;     ///< Node -> kind, diagonal, inverse
-  const Block<float>* inverse = nullptr;   ///< K_pp^-1
-  const BeamRow<float>* beams = nullptr;   ///< [direction * (kBeamLengthMax + 1) + length]
-  const Block<float>* diagonal = nullptr;  ///< K_pp
-  const BeamRow<double>* beams_double = nullptr;
-  const Block<double>* diagonal_double = nullptr;
-};
-
-/// With beams as springs.
-template <>
-struct LatticeView<double> {
-  const Others* other = nullptr;
-  const Kind* kind = nullptr;             ///< By type.
-  const std::uint32_t* type = nullptr;    ///< Node -> kind, ground
-  const MiddleSpring* springs = nullptr;  ///< [axis * (kBeamLengthMax + 1) + length]
-  const Block<double>* ground = nullptr;  ///< What kContactByte stands for.
-};
-
-/// A coarse level, or the finest of other robots, in compressed rows; equal blocks are stored once.
+/// A level in compressed rows; equal blocks are stored once.
 template <class Real>
 struct ClusterView;
 
-/// The beams of a finest level whose beams are all one pitch long, by node and direction.
+/// The beams of a finest level by node and direction: all one pitch long, or along the axes and as
+/// long as each node's kind says.
 struct StencilView {
   const std::int32_t* other = nullptr;  ///< [node * 2 * pair_count + direction]
   std::size_t pair_count = 0;           ///< Of opposite directions.
   const PairRow<float>* rows = nullptr;
   const PairRow<double>* rows_double = nullptr;
+  // Along the axes, instead of these:
+  const std::uint32_t* kind = nullptr;    ///< By node; null if every beam is one pitch long.
+  const BeamLengths* lengths = nullptr;   ///< By kind.
+  const BeamRow<float>* beams = nullptr;  ///< [direction * (kBeamLengthMax + 1) + length]
+  const BeamRow<double>* beams_double = nullptr;
+  const MiddleSpring* springs = nullptr;  ///< [axis * (kBeamLengthMax + 1) + length]; by kind only.
+
+  bool is_along_axes() const { return beams != nullptr; }
 };
 
 /// With blocks of K.
@@ -86,6 +68,7 @@ struct ClusterView<double> {
   const BodySpring* springs = nullptr;
   const Block<double>* ground = nullptr;  ///< Of the types from free_type_count on.
   std::size_t free_type_count = 0;
+  StencilView stencil = {};  ///< Instead of springs, if it is along the axes.
 };
 
 /// From a level to the next coarser one.
@@ -111,8 +94,7 @@ struct Sweeps {
   void (*relax_first)(const std::uint32_t* type, const Block<float>* inverse, const Six<float>* r,
                       Six<float>* z, Range);
   /// z_p = K_pp^-1 (r_p - sum of K_pq z_q), nodes of one colour.
-  void (*relax_lattice)(const LatticeView<float>&, const Six<float>* r, Six<float>* z, Range);
-  void (*relax_cluster)(const ClusterView<float>&, const Six<float>* r, Six<float>* z, Range);
+  void (*relax)(const ClusterView<float>&, const Six<float>* r, Six<float>* z, Range);
 };
 
 /// From double precision to sweeps in single, and back.
@@ -122,10 +104,8 @@ struct Rounding {
   void (*prolong)(const TransferView<double>&, const Six<double>* coarse, const Six<float>* rough,
                   Six<double>* z, Range);
   /// r - K z, rounded.
-  void (*leave_lattice)(const LatticeView<double>&, const Six<double>* r, const Six<double>* z,
-                        Six<float>* rounded, Range);
-  void (*leave_cluster)(const ClusterView<double>&, const Six<double>* r, const Six<double>* z,
-                        Six<float>* rounded, Range);
+  void (*leave)(const ClusterView<double>&, const Six<double>* r, const Six<double>* z,
+                Six<float>* rounded, Range);
   /// z += rough; returns r . z.
   double (*add)(const Six<float>* rough, const Six<double>* r, Six<double>* z, Range);
 };
@@ -133,16 +113,13 @@ struct Rounding {
 template <class Real>
 struct Kernels {
   using Vector = Six<Real>;
-  using Lattice = LatticeView<Real>;
   using Cluster = ClusterView<Real>;
   using Transfer = TransferView<Real>;
 
   /// Forces that a sweep's z left over, gathered at the clusters' centres; nodes from `settled` on
   /// have none.
-  void (*restrict_lattice)(const Lattice&, const Transfer&, std::size_t settled, const Vector* r,
-                           const Six<float>* z, Vector* coarse, Range clusters);
-  void (*restrict_cluster)(const Cluster&, const Transfer&, std::size_t settled, const Vector* r,
-                           const Six<float>* z, Vector* coarse, Range clusters);
+  void (*restrict_to)(const Cluster&, const Transfer&, std::size_t settled, const Vector* r,
+                      const Six<float>* z, Vector* coarse, Range clusters);
   /// z += the rigid motion of the cluster.
   void (*prolong)(const Transfer&, const Vector* coarse, Vector* z, Range);
   /// q = K z on a coarse level; returns z . q.
@@ -152,14 +129,10 @@ struct Kernels {
   /// y = factor x + other y
   void (*combine)(Real factor, const Vector* x, Real other, Vector* y, Range);
   /// q = K p in double precision; returns p . q.
-  double (*apply_lattice)(const Lattice&, const Vector* p, double* q, Range);
   double (*apply_finest)(const Cluster&, const Vector* p, double* q, Range);
   /// z . K z and p . K z, in double precision.
-  std::array<double, 2> (*compare_lattice)(const Lattice&, const Vector* z, const Vector* p, Range);
   std::array<double, 2> (*compare_finest)(const Cluster&, const Vector* z, const Vector* p, Range);
   /// x += step p, r -= step K p; returns p . K p.
-  double (*advance_lattice)(const Lattice&, double step, const Vector* p, double* x,
-                            SplitView<Real> r, Range);
   double (*advance_finest)(const Cluster&, double step, const Vector* p, double* x,
                            SplitView<Real> r, Range);
   /// x += step p, r -= step q

@@ -21,6 +21,17 @@ using Ints = std::int32_t __attribute__((vector_size(16)));
 using Shorts = std::int16_t __attribute__((vector_size(8)));
 using EightShorts = std::int16_t __attribute__((vector_size(16)));
 
+/// A level whose stencil is along the axes: a type of its own, so that loops take the forces that
+/// know it.
+template <class Real>
+struct AxesView : ClusterView<Real> {};
+
+/// Calls a loop with the level as what it is.
+template <class Real, class Loop>
+decltype(auto) with_shape(const ClusterView<Real>& level, const Loop& loop) {
+  return level.stencil.is_along_axes() ? loop(AxesView<Real>{level}) : loop(level);
+}
+
 /// Eight lanes of double precision.
 struct Wide {
   Double low;

@@ -27,12 +27,12 @@ inline Wide middle_force(const MiddleSpring& spring, const Wide& a, const Wide& 
 
 /// What a node gets from its two beams along an axis. Beams that are missing have no stiffness.
 template <int kAxis, class Real>
-inline Wide axis_product(const LatticeView<double>& level, const Six<Real>* z, std::size_t p) {
-  const Others& other = level.other[p];
-  const MiddleSpring* springs = level.springs + kAxis * (kBeamLengthMax + 1);
-  const Kind& kind = level.kind[level.type[p]];
-  const MiddleSpring& up = springs[kind[2 * kAxis]];
-  const MiddleSpring& down = springs[kind[2 * kAxis + 1]];
+inline Wide axis_product(const AxesView<double>& level, const Six<Real>* z, std::size_t p) {
+  const std::int32_t* const other = level.stencil.other + 6 * p;
+  const MiddleSpring* springs = level.stencil.springs + kAxis * (kBeamLengthMax + 1);
+  const BeamLengths& length = level.stencil.lengths[level.stencil.kind[p]];
+  const MiddleSpring& up = springs[length[2 * kAxis]];
+  const MiddleSpring& down = springs[length[2 * kAxis + 1]];
   const Wide own = load_wide(z[p]);
   const Wide above = middle_force<kAxis>(up, own, load_wide(z[other[2 * kAxis]]));
   const Wide below = middle_force<kAxis>(down, load_wide(z[other[2 * kAxis + 1]]), own);
@@ -42,11 +42,11 @@ inline Wide axis_product(const LatticeView<double>& level, const Six<Real>* z, s
 
 /// (K z)_p
 template <class Real>
-inline Wide product(const LatticeView<double>& level, const Six<Real>* z, std::size_t p) {
+inline Wide product(const AxesView<double>& level, const Six<Real>* z, std::size_t p) {
   Wide sum =
       axis_product<0>(level, z, p) + axis_product<1>(level, z, p) + axis_product<2>(level, z, p);
-  if (level.kind[level.type[p]][kContactByte] != 0) {
-    sum += multiply(level.ground[level.type[p]], load_wide(z[p]));
+  if (level.type[p] >= level.free_type_count) {
+    sum += multiply(level.ground[level.type[p] - level.free_type_count], load_wide(z[p]));
   }
   return sum;
 }

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "holdfast/base/lattice.hpp"
+
 /// Vectors and blocks of the preconditioner, for 8-lane arithmetic: of a node's eight lanes two are
 /// zero, and in memory only where they are constants. Real is float, or double where robots are so
 /// slender that bending drowns in single precision's rounding (precise_forces.hpp).
@@ -76,12 +78,7 @@ struct Seat {
   std::int32_t cluster = 0;
 };
 
-/// Direction -> node; the node one past the last stands for "none" and for the immobile ground.
-using Others = std::array<std::int32_t, 6>;
-
-/// Direction -> pitches that the beam there is long, 0 for none; then, in kContactByte, what the
-/// ground does that is no such beam, 0 for nothing. Of cubes.
-using Kind = std::array<std::uint8_t, 8>;
-inline constexpr std::size_t kContactByte = 6;
+/// Direction -> pitches that the beam there is long, 0 for none.
+using BeamLengths = std::array<std::uint8_t, base::Lattice::kDirectionCountMax>;
 
 }  // namespace holdfast::solver
