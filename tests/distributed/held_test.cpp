@@ -18,8 +18,7 @@ using agent::Method;
 /// Where nothing that exists can move no force is left on it before planned modules have moved; a
 /// verdict then would be one by contact states of planned feet that nobody has looked up.
 TEST(Held, planned_modules_bear_what_the_exact_solver_says_whatever_is_fixed) {
-  constexpr Method kMethods[] = {Method::kElimination, Method::kPolynomial, Method::kFronts,
-                                 Method::kConjugateGradients};
+  constexpr Method kMethods[] = {Method::kElimination, Method::kPolynomial, Method::kFronts};
   int count = 0;
   for (const base::Lattice& lattice : test::kLattices) {
     for (const test::Fixed fixed : test::kFixed) {

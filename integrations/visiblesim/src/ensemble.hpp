@@ -25,7 +25,7 @@ struct EnsembleReport {
 
 class Ensemble {
  public:
-  /// Of the options count link, method, degree_max and watch_for. There is no fault in them:
+  /// Of the options count link, method and watch_for. There is no fault in them:
   /// sim::find_floor_fault(), sim::find_options_fault().
   Ensemble(Structure structure, sim::SimulationOptions options);
 

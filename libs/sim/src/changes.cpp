@@ -41,10 +41,10 @@ bool has_noise(const LinkModel& link) {
          link.corruption > 0;
 }
 
-/// Have modules memory for fronts?
+/// Have modules memory for fronts? Those that know more than a floor do.
 bool lends_fronts(const model::Robot& robot, const SimulationOptions& options) {
-  return options.method ? options.method == agent::Method::kFronts
-                        : !options.only_one_sweep && needs_environment(robot, options.step_end);
+  return options.method == agent::Method::kFronts ||
+         (!options.only_one_sweep && needs_environment(robot, options.step_end));
 }
 
 /// Have modules to keep more planned modules than they have room for themselves, those of a step's

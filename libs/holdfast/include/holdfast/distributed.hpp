@@ -148,7 +148,7 @@ const char* name(ErrorKind kind);
 /// "unstable_by_model", "unexplained".
 const char* name(Difference difference);
 
-/// "elimination", "polynomial", "cg", "block-jacobi", "jacobi", and back.
+/// "elimination", "polynomial", "fronts", and back.
 const char* name(agent::Method method);
 std::optional<agent::Method> find_method(std::string_view name);
 
