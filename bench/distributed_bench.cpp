@@ -6,7 +6,7 @@
 //                                         quiet links; with 6 to PLANNED planned modules, 30 at
 //                                         most; METHOD firmware: those that firmware has
 //   distributed_bench general FROM TO [planned] [turned] [floor] [laws] [near] [friction] [held]
-//                             [v1 | v2] [LATTICE]
+//                             [v1 | v2] [METHOD] [LATTICE]
 //                                         on those lines, else in rounds; cubes or others on walls
 //                                         and ceilings, with loads of their own; one to three
 //                                         modules planned; turned and mirrored; on a floor;
@@ -23,7 +23,6 @@
 //   distributed_bench plans FROM TO       plans told, carried out and withdrawn at any time
 //   distributed_bench storms FROM TO      deaths, cuts, restarts and plans, several at once
 //   distributed_bench mishaps FROM TO     short runs of one kind of fault each, at every moment
-//   distributed_bench growth              rounds against the length of a fixed arm, each method
 //   distributed_bench sweeps METHOD FILE...   sweeps of the equilibrium, a CSV
 //   distributed_bench throughput          events per second and memory of large robots
 #include <fmt/format.h>
@@ -52,8 +51,7 @@ namespace {
 using namespace holdfast;
 using agent::Method;
 
-constexpr Method kMethods[] = {Method::kJacobi, Method::kBlockJacobi, Method::kConjugateGradients,
-                               Method::kElimination};
+constexpr Method kMethods[] = {Method::kPolynomial, Method::kElimination};
 
 /// The paper's time of one iteration, message exchange included (Sec. IV-B).
 constexpr double kPaperIterationSeconds = 0.1105;
@@ -97,9 +95,8 @@ struct Tally {
   int wrong = 0;
   int undecided = 0;
   int disagreeing = 0;
-  int fallen_back = 0;  ///< To conjugate gradients, under the regularised law.
   double ratio_error = 0;
-  std::array<int, 6> methods{};  ///< The last ones.
+  std::array<int, 3> methods{};  ///< The last ones.
   std::vector<double> sweeps;    ///< Of those that needed an equilibrium.
   std::vector<double> rounds;    ///< And all rounds and kilobytes of these.
   std::vector<double> kilobytes;
@@ -111,7 +108,6 @@ struct Tally {
     undecided += comparison.is_undecided() ? 1 : 0;
     disagreeing += comparison.result.all_agree ? 0 : 1;
     const agent::Effort& effort = comparison.result.effort;
-    fallen_back += effort.method == Method::kConjugateGradients && !effort.is_unilateral ? 1 : 0;
     ratio_error = std::max(ratio_error, comparison.ratio_error());
     ++methods[static_cast<std::size_t>(effort.method)];
     if (comparison.sweeps() > 0) {
@@ -168,11 +164,11 @@ int run_random(const Robots& robots, bool is_noisy) {
     }
   }
   fmt::print(
-      "{} robots: {} wrong, {} undecided, {} not agreed; {} to conjugate gradients; largest error "
+      "{} robots: {} wrong, {} undecided, {} not agreed; largest error "
       "{:.4f} of what is allowed; besides, not decided by the exact solver {}; of {} with an "
       "equilibrium:\n",
-      tally.count, tally.wrong, tally.undecided, tally.disagreeing, tally.fallen_back,
-      tally.ratio_error, not_decided, tally.sweeps.size());
+      tally.count, tally.wrong, tally.undecided, tally.disagreeing, tally.ratio_error, not_decided,
+      tally.sweeps.size());
   print_shares("sweeps", tally.sweeps);
   print_shares("rounds", tally.rounds);
   print_shares("kB", tally.kilobytes);
@@ -190,6 +186,7 @@ struct Variety {
   bool is_held = false;
   base::Lattice lattice = base::kCubic;
   sim::LinkModel link = sim::unit();
+  std::optional<Method> method = {};
 
   std::optional<model::Robot> make(std::uint64_t seed) const;
 };
@@ -227,7 +224,8 @@ int run_general(std::uint64_t from, std::uint64_t to, const Variety& variety) {
     if (!robot) {
       continue;  // Nothing else of it is held.
     }
-    const test::Comparison comparison = test::compare(*robot, {.link = variety.link, .seed = seed});
+    const test::Comparison comparison =
+        test::compare(*robot, {.link = variety.link, .seed = seed, .method = variety.method});
     if (const auto time = sim::seconds(variety.link, comparison.result.verdict_time)) {
       tally.seconds.push_back(*time);
     }
@@ -465,23 +463,6 @@ model::RobotSpec fixed_arm(int count) {
   return spec;
 }
 
-int run_growth() {
-  fmt::print("# method modules_in_free_row rounds iterations verdict\n");
-  for (const Method method : kMethods) {
-    for (const int length : {8, 10, 12, 14, 16, 18, 20, 24, 30, 40, 60, 100}) {
-      if ((method == Method::kJacobi || method == Method::kBlockJacobi) && length > 18) {
-        continue;
-      }
-      const model::Robot robot = make_robot(fixed_arm(length));
-      const auto unit = test::compare(robot, {.method = method});
-      fmt::print("{} {} {} {} {}\n", name(method), length - 6,
-                 unit.result.phases[static_cast<std::size_t>(agent::Phase::kEquilibrium)].time,
-                 unit.result.effort.iterations, agent::name(unit.robot));
-    }
-  }
-  return 0;
-}
-
 /// One line a file: how many sweeps the equilibrium took, beside the exact answer.
 int run_sweeps(std::string_view method_name, std::span<char*> files) {
   const auto method = find_method(method_name);
@@ -536,7 +517,7 @@ int usage() {
              "noisy FROM TO [METHOD [PLANNED]] | faults FROM TO [METHOD [PLANNED]] | stale FROM TO "
              "| liars FROM TO | plans FROM TO | storms FROM TO | "
              "mishaps FROM TO | watching FILE... | "
-             "growth | sweeps METHOD FILE... | throughput\n");
+             "sweeps METHOD FILE... | throughput\n");
   return 64;
 }
 
@@ -557,6 +538,10 @@ int run_general(std::span<char*> arguments) {
     }
     if (const auto link = sim::find_link_model(argument)) {
       variety.link = *link;
+      continue;
+    }
+    if (const auto method = find_method(argument)) {
+      variety.method = method;
       continue;
     }
     const auto found = io::find_lattice(argument);
@@ -584,8 +569,8 @@ int main(int argc, char** argv) {
   if (what == "sweeps" && argc > 3) {
     return run_sweeps(arguments[2], arguments.subspan(3)) == 0 ? 0 : 1;
   }
-  if (what == "growth" || what == "throughput") {
-    return what == "growth" ? run_growth() : run_throughput();
+  if (what == "throughput") {
+    return run_throughput();
   }
   constexpr std::string_view kCampaigns[] = {"random", "noisy", "faults", "stale",
                                              "liars",  "plans", "storms", "mishaps"};

@@ -61,8 +61,7 @@ Run run(const emulator::Image& image, const model::Robot& robot) {
 }
 
 const char* method_name(agent::Method method) {
-  constexpr const char* kNames[] = {"jacobi",     "block-jacobi", "cg",
-                                    "polynomial", "elimination",  "fronts"};
+  constexpr const char* kNames[] = {"polynomial", "elimination", "fronts"};
   return kNames[static_cast<int>(method)];
 }
 

@@ -411,52 +411,37 @@ STATES = {  # name: centre, what else it may be
     'plan': (70, 86, 'or forget'), 'hosts': (190, 86, ''), 'mass': (310, 86, ''),
     'angles': (430, 86, ''), 'begin': (580, 86, 'or clusters'),
     'factor': (470, 206, ''), 'iterate': (600, 206, 'or tree iterate'),
-    'start': (190, 206, ''), 'gradient': (70, 296, ''), 'jacobi': (190, 296, ''),
-    'slope': (70, 386, ''), 'mix': (190, 386, 'order: slope'), 'high': (310, 386, ''),
-    'low': (450, 386, ''), 'corners': (600, 386, ''), 'release': (310, 496, 'order: hold'),
-    'free': (430, 496, 'order: hold'), 'loads': (600, 496, ''), 'verdict': (600, 590, '')}
+    'corners': (600, 316, ''), 'release': (310, 426, 'order: hold'),
+    'free': (430, 426, 'order: hold'), 'loads': (600, 426, ''), 'verdict': (600, 520, '')}
 FILLS = {**dict.fromkeys(('factor', 'iterate'), '#d5efe6'),
-         **dict.fromkeys(('start', 'gradient', 'jacobi', 'slope', 'mix', 'high', 'low'), '#fde3cf'),
          **dict.fromkeys(('corners', 'release', 'free', 'loads', 'verdict'), '#f3f3f3')}
-AGAIN = {'plan': -1, 'gradient': -1, 'slope': -1, 'jacobi': -1, 'iterate': 1}
+AGAIN = {'plan': -1, 'iterate': 1}
 EDGES = [  # corners of the way, colour
     ((114, 86), (146, 86)), ((234, 86), (266, 86)), ((354, 86), (386, 86)), ((474, 86), (536, 86)),
     ((310, 66), (310, 44), (580, 44), (580, 66)),
-    ((430, 66), (430, 26), (764, 26), (764, 590), (644, 590)),
+    ((430, 66), (430, 26), (764, 26), (764, 520), (644, 520)),
     ((560, 106), (560, 150), (470, 150), (470, 186)), ((600, 106), (600, 186)),
-    ((546, 106), (546, 124), (190, 124), (190, 186)),
     ((514, 206), (556, 206)), ((580, 226), (580, 250), (470, 250), (470, 226)),
-    ((612, 226), (612, 366)), ((494, 386), (556, 386)),
-    ((420, 366), (420, 251), (212, 251), (212, 226)),
-    ((234, 206), (310, 206), (310, 366)), ((166, 226), (100, 276)), ((180, 226), (180, 276)),
-    ((60, 316), (60, 366)), ((95, 316), (160, 366)),
-    ((114, 308), (130, 308), (130, 340), (280, 340), (280, 366)),
-    ((234, 290), (295, 290), (295, 366)),
-    ((70, 406), (70, 428), (285, 428), (285, 406)), ((234, 386), (266, 386)),
-    ((354, 386), (406, 386)), ((585, 406), (585, 441), (330, 441), (330, 476)),
-    ((310, 476), (310, 406)), ((440, 476), (440, 420), (345, 420), (345, 406)),
-    ((556, 496), (474, 496)), ((310, 516), (310, 540), (580, 540), (580, 516)),
-    ((610, 406), (610, 476)), ((600, 516), (600, 570))]
+    ((612, 226), (612, 296)), ((556, 316), (330, 316), (330, 406)),
+    ((290, 406), (290, 274), (596, 274), (596, 226)), ((430, 406), (430, 274)),
+    ((556, 426), (474, 426)), ((310, 446), (310, 470), (580, 470), (580, 446)),
+    ((610, 336), (610, 406)), ((600, 446), (600, 500))]
 RED_EDGES = [((644, 191), (694, 191), (694, 98), (624, 98)),
-             ((470, 366), (470, 286), (722, 286), (722, 86), (624, 86)),
-             ((644, 386), (744, 386), (744, 74), (624, 74))]
+             ((644, 316), (744, 316), (744, 74), (624, 74))]
 WORDS = [((506, 39), 'a module is fixed', INK), ((690, 21), 'topples', INK),
          ((516, 145), 'elimination', INK), ((634, 146), 'polynomial', INK),
-         ((300, 119), 'cg, block-jacobi, jacobi', INK), ((525, 264), 'new states', INK),
-         ((635, 320), 'settled', INK), ((525, 381), 'settled', INK),
-         ((365, 246), 'next correction', INK), ((516, 436), 'under law 2', INK),
-         ((292, 462), 'freed', INK), ((516, 490), 'open, held', INK), ((445, 535), 'none', INK),
-         ((662, 184), 'stuck', RED), ((538, 281), 'stuck: next method, law', RED),
-         ((692, 381), 'contradict: law 2', RED)]
-NOTES = ['Green: one sweep an iteration. Orange: conjugate gradients and Jacobi methods.',
-         'Law 2: the unilateral one, Eqs. (6)-(8).',
+         ((525, 245), 'new states', INK), ((640, 264), 'settled', INK),
+         ((370, 269), 'freed', INK), ((510, 311), 'under law 2', INK),
+         ((516, 420), 'open, held', INK), ((445, 465), 'none', INK),
+         ((662, 184), 'stuck', RED), ((692, 311), 'contradict: law 2', RED)]
+NOTES = ['Green: iterations, one sweep each.', 'Law 2: the unilateral one, Eqs. (6)-(8).',
          'Settled: of a robot with a fixed module, loads comes next; behind free, the verdict.',
-         'Stuck: begin without clusters if there were any, else cg; a Jacobi method, the next.',
+         'Stuck: begin without clusters if there were any, else with the next method or law.',
          'From every state: verdict, undecided, with the reason.']
 
 
 def conductor():
-    canvas = Canvas(780, 715, 'What the root orders next')
+    canvas = Canvas(780, 645, 'What the root orders next')
     for points in EDGES:
         canvas.arrow(*points, width=1.3)
     for points in RED_EDGES:
@@ -470,7 +455,7 @@ def conductor():
     for at, words, colour in WORDS:
         canvas.text(at, words, colour=colour, size=11)
     for number, words in enumerate(NOTES):
-        canvas.text((24, 630 + 17 * number), words, 'start', size=12)
+        canvas.text((24, 560 + 17 * number), words, 'start', size=12)
     return canvas
 
 

@@ -313,8 +313,8 @@ class Robot:
             ``unit``: rounds of a synchronous network.
         method
             ``auto``: ``elimination`` on a level floor under weight alone, else ``fronts``, which
-            takes few sweeps for any loops and contact in modules with more memory;
-            ``polynomial``, ``cg``, ``block-jacobi`` or ``jacobi``.
+            takes few sweeps for any loops and contact in modules with more memory; or
+            ``polynomial``.
         noise
             Probabilities ``loss``, ``duplication``, ``corruption``, ``reordering``; seconds
             ``jitter``.

@@ -145,8 +145,7 @@ std::shared_ptr<Run> simulate_robot(const SharedStructure& structure, const py::
   const auto found_method = find_method(method);
   if (!found_link || (!found_method && method != "auto")) {
     refuse(found_link ? "method" : "link", found_link ? method : link,
-           found_link ? "auto, elimination, fronts, polynomial, cg, block-jacobi or jacobi"
-                      : "v1, v2, catoms or unit");
+           found_link ? "auto, elimination, fronts or polynomial" : "v1, v2, catoms or unit");
   }
   options.link = *found_link;
   options.method = found_method;

@@ -50,7 +50,8 @@ done
 [ "$count" -ge 40 ] || fault "only $count options were found in --help"
 [ "$(complete_words simulate --link "" | xargs)" = "v1 v2 catoms unit" ] ||
   fault "bash does not complete the words of --link"
-[ "$(complete_words simulate --method c)" = cg ] || fault "bash does not complete --method cg"
+[ "$(complete_words simulate --method p)" = polynomial ] ||
+  fault "bash does not complete --method polynomial"
 [ "$(complete_words generate po)" = portal ] || fault "bash does not complete generate portal"
 cd "$(dirname "$0")"
 [ "$(complete_words check completion_te)" = completion_test.sh ] ||

@@ -62,9 +62,6 @@ constexpr Case kCases[] = {
     {"elimination", 6, agent::Method::kElimination, 17287114288205420056U},
     {"polynomial", 12, agent::Method::kPolynomial, 11151561467803241176U},
     {"planned_between_others", 8, agent::Method::kPolynomial, 14485290013320252477U},
-    {"conjugate_gradients", 8, agent::Method::kConjugateGradients, 16007265758610677084U},
-    {"block_jacobi", 9, agent::Method::kBlockJacobi, 9831264618894999304U},
-    {"jacobi", 9, agent::Method::kJacobi, 14214814929385136623U},
 };
 
 TEST_P(Determinism, every_method_has_one_trace) {

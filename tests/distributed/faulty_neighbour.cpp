@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <iterator>
+
+#include "holdfast/agent/operations.hpp"
 
 namespace holdfast::test {
 namespace {
@@ -147,7 +150,8 @@ FaultyNeighbour::Bytes FaultyNeighbour::random_message() {
   constexpr auto kTypes = static_cast<std::uint64_t>(wire::MessageType::kNews);
   Bytes message(2);
   message[0] = static_cast<std::uint8_t>(1 + rng_.below(kTypes));
-  message[1] = static_cast<std::uint8_t>(1 + rng_.below(wire::kOperationCount));
+  const auto place = rng_.below(std::size(agent::kOperations));
+  message[1] = static_cast<std::uint8_t>(agent::kOperations[place].operation);
   message.resize(static_cast<std::size_t>(wire::message_bytes(message[0], message[1])));
   for (std::size_t i = 2; i < message.size(); ++i) {
     message[i] = static_cast<std::uint8_t>(rng_.below(256));

@@ -18,8 +18,7 @@ using agent::Method;
 /// No force is left on a robot whose existing modules cannot move before planned ones have moved; a
 /// verdict then would rest on contact states of planned feet that nobody has looked up.
 TEST(Held, planned_modules_bear_what_the_exact_solver_says_whatever_is_fixed) {
-  constexpr Method kMethods[] = {Method::kElimination, Method::kPolynomial, Method::kFronts,
-                                 Method::kConjugateGradients};
+  constexpr Method kMethods[] = {Method::kElimination, Method::kPolynomial, Method::kFronts};
   int count = 0;
   for (const base::Lattice& lattice : test::kLattices) {
     for (const test::Fixed fixed : test::kFixed) {

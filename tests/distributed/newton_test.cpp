@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 // Robots whose modules have methods of one sweep an iteration only, as firmware has, against the
-// exact solver: what others leave to conjugate gradients Newton's method by the polynomial decides
+// exact solver: what does not settle at once Newton's method by the polynomial decides
 // (docs/one_sweep.md).
 #include <gtest/gtest.h>
 

@@ -137,7 +137,6 @@ void watch_random_robots(Pairs& pairs) {
         verdict::assess(robot).contact_model == verdict::ContactModel::kUnilateral;
     if (is_exact || seed < test::campaign(40U)) {
       watch(robot, agent::Method::kElimination, pairs);
-      watch(robot, agent::Method::kConjugateGradients, pairs);
       watch(robot, agent::Method::kFronts, pairs);
     }
   }
@@ -194,9 +193,6 @@ TEST(Orders, follow_each_other_as_the_document_says) {
   }
   const std::filesystem::path folder = HOLDFAST_SCENARIO_DIR;
   const Structure arm = load_file(folder / "arm_tips_a.json").value();
-  const Structure crane = load_file(folder / "crane_tips_a.json").value();
-  watch(arm.robot, agent::Method::kBlockJacobi, seen);
-  watch(crane.robot, agent::Method::kJacobi, seen);
   // Plans that are withdrawn later; a tree so deep that there are clusters.
   watch(arm.robot, agent::Method::kElimination, seen,
         {{.at = 2000, .module = 1, .cell = agent::kEveryCell, .is_withdrawal = true}});

@@ -185,8 +185,7 @@ RobotState near_limit(const RobotState& robot, const model::Step& step,
 }
 
 constexpr agent::Method kMethods[] = {agent::Method::kElimination, agent::Method::kFronts,
-                                      agent::Method::kPolynomial,
-                                      agent::Method::kConjugateGradients};
+                                      agent::Method::kPolynomial};
 
 struct Tally {
   int steps = 0;

@@ -85,7 +85,7 @@ _holdfast() {
       case $previous in
         --robot) : ;;
         --lattice) : ;;
-        --method) words="auto elimination fronts polynomial cg block-jacobi jacobi" ;;
+        --method) words="auto elimination fronts polynomial" ;;
         --link) words="v1 v2 catoms unit" ;;
         --seed) : ;;
         --loss) : ;;

@@ -352,11 +352,9 @@ Command add_simulate(CLI::App& app) {
           "--method", options->method,
           "auto (elimination on a level floor under weight alone, else fronts), elimination "
           "(polynomial if the robot has many loops), fronts (any loops and contact in few sweeps, "
-          "modules with more memory), polynomial, cg, block-jacobi, jacobi (the paper's)")
+          "modules with more memory), polynomial")
       ->type_name("NAME")
-      ->check(CLI::IsMember(
-                  {"auto", "elimination", "fronts", "polynomial", "cg", "block-jacobi", "jacobi"})
-                  .description(""))
+      ->check(CLI::IsMember({"auto", "elimination", "fronts", "polynomial"}).description(""))
       ->capture_default_str();
   command
       ->add_option(

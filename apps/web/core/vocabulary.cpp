@@ -23,9 +23,6 @@ struct LinkChoice {
 constexpr MethodChoice kMethods[] = {
     {agent::Method::kElimination, "elimination or fronts"},
     {agent::Method::kPolynomial, "polynomial"},
-    {agent::Method::kConjugateGradients, "conjugate gradients"},
-    {agent::Method::kBlockJacobi, "block Jacobi"},
-    {agent::Method::kJacobi, "Jacobi (the paper's)"},
 };
 constexpr LinkChoice kLinks[] = {
     {sim::blinky_blocks_v1, "38,400 baud"},

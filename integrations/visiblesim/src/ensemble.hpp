@@ -25,7 +25,7 @@ struct EnsembleReport {
 
 class Ensemble {
  public:
-  /// Takes link, method, degree_max and watch_for from the options, in which
+  /// Takes link, method and watch_for from the options, in which
   /// sim::find_floor_fault() and sim::find_options_fault() find no fault.
   Ensemble(Structure structure, sim::SimulationOptions options);
 

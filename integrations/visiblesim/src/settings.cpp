@@ -101,8 +101,7 @@ std::optional<std::string> Settings::take(char letter, std::string_view value) {
   if (letter == 'M') {
     const auto method = find_method(value);
     simulation.method = method ? method : simulation.method;
-    return method ? std::nullopt
-                  : std::optional(wrong("elimination, polynomial, cg, block-jacobi or jacobi"));
+    return method ? std::nullopt : std::optional(wrong("elimination, polynomial or fronts"));
   }
   if (letter == 'J') {
     json = value;
@@ -119,7 +118,7 @@ std::string_view option_help() {
          "\t -P X,Y,Z@S\t\tA module is planned\n"
          "\t -T ID@S\t\tA module is tapped\n"
          "\t -C MICROSECONDS\tEvery event keeps a module busy for so long\n"
-         "\t -M NAME\t\tMethod: elimination, polynomial, cg, block-jacobi, jacobi\n"
+         "\t -M NAME\t\tMethod: elimination, polynomial, fronts\n"
          "\t -J FILE\t\tWrite the report of 'holdfast simulate --json' in the end\n";
 }
 

@@ -27,9 +27,9 @@ TEST(Settings, take_changes_with_their_times_in_microseconds) {
 
 TEST(Settings, take_method_and_computing_time_and_keep_the_lines_of_version_1) {
   Settings settings;
-  EXPECT_FALSE(settings.take('M', "cg"));
+  EXPECT_FALSE(settings.take('M', "polynomial"));
   EXPECT_FALSE(settings.take('C', "1500"));
-  EXPECT_EQ(settings.simulation.method, agent::Method::kConjugateGradients);
+  EXPECT_EQ(settings.simulation.method, agent::Method::kPolynomial);
   EXPECT_EQ(settings.simulation.link.compute_time, 1500U);
   EXPECT_EQ(settings.simulation.link.packet_bytes, 17);
 }

@@ -109,13 +109,6 @@ void Codec::i32(std::int32_t& value) {
   value = static_cast<std::int32_t>(bits);
 }
 
-void Codec::short_real(float& value) {
-  if (out_ != nullptr) {
-    return out_->short_real(static_cast<double>(value));
-  }
-  value = in_.short_real();
-}
-
 void Codec::real(float& value) {
   if (out_ != nullptr) {
     return out_->real(static_cast<double>(value));

@@ -67,7 +67,6 @@ class Codec {
   // These may be anything.
   void u32(std::uint32_t& value);
   void i32(std::int32_t& value);
-  void short_real(float& value);
   void real(float& value);
   void long_real(double& value);
   void half_cells(base::Cell& corner);
@@ -122,8 +121,6 @@ class Ruler {
   constexpr void u32(std::uint32_t&) { bytes_ += 4; }
 
   constexpr void i32(std::int32_t&) { bytes_ += 4; }
-
-  constexpr void short_real(float&) { bytes_ += 2; }
 
   constexpr void real(float&) { bytes_ += 4; }
 

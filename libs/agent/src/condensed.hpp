@@ -25,9 +25,6 @@
 /// too stiff in M then, six displacements for each planned module, are small eigenvalues, which
 /// conjugate gradients find in some more iterations. In each iteration the forces K_pr u go up to
 /// the host behind the order, and u_p comes down: at most one sweep more.
-///
-/// Conjugate gradients have u_p among their unknowns. Their polynomial has its diagonal block
-/// apart, and only the last exchange of a sweep, for w = A z, has its beams in it.
 namespace holdfast::agent {
 
 /// How stiff the beams of a planned module are that stands still in the polynomial. Of 58 random

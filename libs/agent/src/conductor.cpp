@@ -24,7 +24,6 @@ Order Conductor::begin(const Setup& setup, const base::Cell& root, std::uint32_t
   census_ = module_count;
   depth_ = depth;
   wave_depth_ = depth;
-  degree_ = depth < setup.degree_max ? depth : setup.degree_max;
   effort_.method = setup.method;
   judges_faces_ = kJudgesFaces && lent.judges_faces;
   has_left_clusters_ = setup.only_one_sweep || !setup.is_cubic();
@@ -33,9 +32,8 @@ Order Conductor::begin(const Setup& setup, const base::Cell& root, std::uint32_t
   slack_bits_ = setup.slack_bits;
 #endif
   if constexpr (kHasAllMethods) {
-    const bool eliminates = setup.method == Method::kFronts || setup.method == Method::kElimination;
-    may_have_fronts_ = lent.has_fronts && eliminates;
-    effort_.method = eliminates ? Method::kElimination : effort_.method;
+    may_have_fronts_ = lent.has_fronts;
+    effort_.method = setup.method == Method::kFronts ? Method::kElimination : setup.method;
   }
   Order first = ask(Operation::kPlan);
   first.index = kNoPlanned;
@@ -55,11 +53,8 @@ Order Conductor::next(const Setup& setup, const Report& report, const Planned& p
       return after_angles(setup, report);
     case Operation::kBegin:
     case Operation::kClusters:
-      if (is_one_sweep()) {
-        choose_clusters(report);
-        return first_iteration();
-      }
-      break;
+      choose_clusters(report);
+      return first_iteration();
     case Operation::kFactor:
       return tree_iteration();
     case Operation::kResume:
@@ -75,50 +70,18 @@ Order Conductor::next(const Setup& setup, const Report& report, const Planned& p
     case Operation::kIterateDeflated:
     case Operation::kIterateLast:
       return kKeepsAnswers ? after_iteration(setup, completed(report)) : say_answer();
+    case Operation::kHold:
+      return after_hold(report);
     case Operation::kCorners:
       return after_corners(setup, report);
     case Operation::kLoads:
       return after_loads(setup, report);
-    case Operation::kVerdict:
-      return finish(Verdict::kUndecided, Reason::kNotConverged);
     case Operation::kShape:
       return kJudgesFaces ? after_shape(report) : say_answer();
     case Operation::kNext:
       return say_answer();
     case Operation::kSeek:
       return kSeeksOthers ? after_seek(setup, report) : say_answer();
-    default:
-      break;
-  }
-  if constexpr (kHasAllMethods) {
-    return next_of_solve(setup, report);
-  }
-  return asked_ == Operation::kHold ? after_hold(report)
-                                    : finish(Verdict::kUndecided, Reason::kNotConverged);
-}
-
-/// The next order of conjugate gradients and of the Jacobi methods.
-Order Conductor::next_of_solve(const Setup& setup, const Report& report) {
-  switch (asked_) {
-    case Operation::kBegin:
-      return is_jacobi() ? start_jacobi() : start_solve(false);
-    case Operation::kHigh: {
-      Order low = ask(Operation::kLow);
-      low.flags = is_unilateral_ || is_jacobi() ? kFollowStates : std::uint8_t{0};
-      return low;
-    }
-    case Operation::kLow:
-      return judge(setup, report);
-    case Operation::kStart:
-      return after_start(report);
-    case Operation::kGradient:
-      return after_gradient(setup, report);
-    case Operation::kJacobi:
-      return after_jacobi(setup, report);
-    case Operation::kSlope:
-      return is_unilateral_ ? after_slope(report) : after_mix(report);
-    case Operation::kHold:
-      return after_hold(report);
     default:
       break;
   }
@@ -281,7 +244,7 @@ Order Conductor::after_angles(const Setup& setup, const Report& report) {
   return begin_law(setup, false);
 }
 
-// ---- Equilibrium: the outer loop.
+// ---- Equilibrium.
 
 Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
   const bool is_renewed =
@@ -299,10 +262,7 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
   }
   effort_.is_unilateral = is_unilateral;
   is_tilting_ = false;
-  has_history_ = false;
   contact_iterations_max_ = effort_.contact_iterations + kContactIterationsMax;
-  check_at_ = effort_.iterations + 2 * jacobi_span();
-  check_error_ = kUnbounded;
   stagnation_count_ = 0;
   error_ = kUnbounded;
   error_best_ = kUnbounded;
@@ -316,32 +276,19 @@ Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
     tries_each_state_ = false;
     foot_count_ = 0;
   }
-  solve_iterations_max_ = 200 + 20 * effort_.module_count;
-  Order begin = ask(Operation::kBegin);
-  if (is_one_sweep()) {
-    choose_one_sweep(setup, is_unilateral);
-    had_clusters_ = false;
-    begin = ask(may_have_clusters() ? Operation::kClusters : Operation::kBegin);
-    const bool starts = effort_.method == Method::kPolynomial && !is_any_remote_;
-    begin.count = starts ? iteration_degree() : std::uint16_t{0};
-  }
-  if (!has_gradients(setup) && !is_one_sweep()) {
-    return finish(Verdict::kUndecided, Reason::kNotConverged);
-  }
+  choose_one_sweep(setup, is_unilateral);
+  had_clusters_ = false;
+  Order begin = ask(may_have_clusters() ? Operation::kClusters : Operation::kBegin);
+  const bool starts = effort_.method == Method::kPolynomial && !is_any_remote_;
+  begin.count = starts ? iteration_degree() : std::uint16_t{0};
   begin_states();
-  begin.flags = static_cast<std::uint8_t>(
-      (is_unilateral ? kUnilateralLaw : 0U) | (is_one_sweep() ? kOneSweep : 0U) |
-      (effort_.method == Method::kPolynomial ? kWithIterations : 0U) |
-      (has_fronts() ? kWithFronts : 0U));
+  begin.flags =
+      static_cast<std::uint8_t>((is_unilateral ? kUnilateralLaw : 0U) | kOneSweep |
+                                (effort_.method == Method::kPolynomial ? kWithIterations : 0U) |
+                                (has_fronts() ? kWithFronts : 0U));
   begin.reals[0] = static_cast<float>(is_unilateral ? unilateral_gamma() : setup.contact_gamma);
   begin.reals[1] = static_cast<float>(static_cast<double>(extent_ + 1) * setup.section.length);
   return begin;
-}
-
-Order Conductor::move(double length, double mix) {
-  Order high = ask(Operation::kHigh);
-  high.reals = {static_cast<float>(length), static_cast<float>(mix)};
-  return high;
 }
 
 /// What a residual's report says of contact.
@@ -357,61 +304,6 @@ void Conductor::note_facets(const Report& report) {
   }
 }
 
-/// Reports of kLow: error bound, largest ratio, facets that want another state, the hash of all.
-Order Conductor::judge(const Setup& setup, const Report& report) {
-  const auto error = static_cast<double>(report.error());
-  ratio_ = static_cast<double>(report.load_ratio_max());
-  note_facets(report);
-  if (!is_number(error) || effort_.iterations > setup.iteration_count_max) {
-    return give_up(setup);
-  }
-  error_ = error;
-  const bool is_better = error < 0.7 * error_best_;
-  error_best_ = is_better ? error : error_best_;
-  stagnation_count_ =
-      is_better ? std::uint8_t{0} : static_cast<std::uint8_t>(stagnation_count_ + 1);
-  // Contact states first, at the usual tolerance; then the verdict, which may need a better one.
-  const bool follows = is_unilateral_ || is_jacobi();
-  const bool is_consistent = follows || report.changed_count() == 0;
-  target_ = (is_consistent ? kRatioTolerance : kStateTolerance) * (1 + absolute(ratio_));
-  if (needs_forces(setup)) {
-    const bool is_halting = stagnation_count_ > kStagnationMax;
-    target_ = is_halting ? halting_target() : uneven_target();
-  }
-  const bool is_told = error <= target_ || (stagnation_count_ > kStagnationMax && !is_uneven());
-  if (!is_consistent && is_told) {
-    return judge_regularised(setup, report);
-  }
-  if (is_consistent && error <= target_) {
-    const double distance = absolute(ratio_ - 1) / kDoubt;
-    if (error <= distance || error <= kErrorLeast) {
-      return settled(setup);
-    }
-    target_ = distance > kErrorLeast ? distance : kErrorLeast;
-  }
-  if (is_jacobi() ? is_jacobi_stuck() : stagnation_count_ > kStagnationMax) {
-    return give_up(setup);
-  }
-  return is_jacobi() ? start_jacobi() : start_solve(false);
-}
-
-/// The linear problem is solved and some facets want another state.
-Order Conductor::judge_regularised(const Setup& setup, const Report& report) {
-  if (is_back()) {
-    return next_trial(setup);
-  }
-  const bool is_cycle = was_seen(report.states_hash());
-  if (is_cycle || effort_.contact_iterations > contact_iterations_max_) {
-    return is_seeking()         ? leave_trial(setup, !is_cycle)
-           : may_hang_by_foot() ? begin_one_foot()
-                                : begin_law(setup, true);
-  }
-  ++effort_.contact_iterations;
-  error_best_ = kUnbounded;
-  stagnation_count_ = 0;
-  return start_solve(true);
-}
-
 /// The present way leads nowhere: the next safer method, the next law, or no answer.
 Order Conductor::give_up(const Setup& setup) {
   if (is_seeking()) {
@@ -419,11 +311,6 @@ Order Conductor::give_up(const Setup& setup) {
   }
   if (effort_.iterations > setup.iteration_count_max) {
     return finish(Verdict::kUndecided, Reason::kNotConverged);
-  }
-  if (kHasAllMethods && is_jacobi()) {
-    effort_.method =
-        effort_.method == Method::kJacobi ? Method::kBlockJacobi : Method::kConjugateGradients;
-    return begin_law(setup, false);
   }
   if (!is_unilateral_) {
     has_given_up_ = true;
@@ -472,179 +359,6 @@ bool Conductor::was_seen(std::uint32_t hash) {
   return !is_new;
 }
 
-// ---- Conjugate gradients with one reduction an iteration [Chronopoulos, Gear 1989].
-
-Order Conductor::start_solve(bool adopts_states) {
-  ++effort_.solves;
-  has_history_ = has_history_ && !adopts_states;
-  solve_iterations_ = 0;
-  Order start = ask(Operation::kStart);
-  start.flags = adopts_states ? kAdoptStates : std::uint8_t{0};
-  start.count = degree_;
-  return start;
-}
-
-Order Conductor::after_start(const Report& report) {
-  if (is_jacobi()) {
-    Order jacobi = ask(Operation::kJacobi);
-    jacobi.count = batch_;
-    return jacobi;
-  }
-  const bool is_rough = is_tilting_ && !is_unilateral_ && !is_uneven();
-  const double reduction = is_rough ? kReductionTilting : kReductionLeast;
-  const double least = reduction * static_cast<double>(report.solve_error());
-  const double enough = is_tilting_ && !is_unilateral_ ? 0 : 0.3 * target_;
-  solve_error_ = least > enough ? least : enough;
-  gamma_ = 0;
-  alpha_ = 0;
-  const auto gamma = static_cast<double>(report.residual_product());
-  if (!(gamma > 0) || !is_number(gamma)) {
-    return move(0);
-  }
-  return next_gradient(gamma, static_cast<double>(report.image_product()));
-}
-
-Order Conductor::after_gradient(const Setup& setup, const Report& report) {
-  ++effort_.iterations;
-  ++solve_iterations_;
-  const auto gamma = static_cast<double>(report.residual_product());
-  if (!(static_cast<double>(report.solve_error()) > solve_error_) || !is_number(gamma) ||
-      solve_iterations_ >= solve_iterations_max_ ||
-      effort_.iterations > setup.iteration_count_max) {
-    return end_solve();
-  }
-  return next_gradient(gamma, static_cast<double>(report.image_product()));
-}
-
-/// gamma = (r, z), delta = (z, w): beta = gamma / gamma_old, alpha = gamma / (delta - beta gamma /
-/// alpha_old).
-Order Conductor::next_gradient(double gamma, double delta) {
-  const double beta = gamma_ > 0 ? gamma / gamma_ : 0;
-  const double curvature = gamma_ > 0 ? delta - beta * gamma / alpha_ : delta;
-  const double alpha = gamma / curvature;
-  if (!(curvature > 0) || !is_number(alpha)) {
-    return end_solve();
-  }
-  Order gradient = ask(Operation::kGradient);
-  gradient.count = degree_;
-  gradient.reals = {static_cast<float>(alpha), static_cast<float>(beta)};
-  gamma_ = gamma;
-  alpha_ = static_cast<double>(gradient.alpha());
-  return gradient;
-}
-
-Order Conductor::end_solve() {
-  if (!is_unilateral_) {
-    const bool mixes = has_history_ && is_tilting_;
-    has_history_ = true;
-    if (!mixes) {
-      return move(1);
-    }
-    Order products = ask(Operation::kSlope);
-    products.flags = kMixProducts;
-    return products;
-  }
-  Order slope = ask(Operation::kSlope);
-  slope.flags = kExchangeFirst;
-  low_ = 0;
-  high_ = 1;
-  slope_count_ = 0;
-  slope.reals = {0.0F, 1.0F};
-  return slope;
-}
-
-/// Anderson's method of depth one, in the norm of the solve's matrix: the combination of the last
-/// two iterates whose correction is least, moved by its correction.
-Order Conductor::after_mix(const Report& report) {
-  const auto mix =
-      static_cast<double>(report.mix_product()) / static_cast<double>(report.mix_square());
-  return move(1, is_number(mix) ? mix : 0);
-}
-
-// ---- Line search: the slope of a convex, piecewise quadratic energy never decreases.
-
-/// A report brings the slope at 0 and at four places in (low, high].
-Order Conductor::after_slope(const Report& report) {
-  const auto slope_at = [&](std::size_t place) { return static_cast<double>(report.slope(place)); };
-  const double enough = kSlopeReduction * absolute(slope_at(0));
-  if (slope_count_ == 0 && slope_at(4) <= enough) {
-    return move(1);
-  }
-  const double spacing = (high_ - low_) / 4;
-  const bool is_at_start = !(low_ > 0) && slope_at(1) > 0;
-  const int count_max = is_at_start ? kSlopeCountLimit : kSlopeCountMax;
-  double before = 0;
-  for (std::size_t place = 1; place <= 4; ++place) {
-    const double slope = slope_at(place);
-    const double t = low_ + spacing * static_cast<double>(place);
-    if (slope > 0) {
-      if (slope_count_ >= count_max) {
-        // Between two places the slope is nearly straight by now.
-        return move(t - spacing + (before < 0 ? spacing * before / (before - slope) : 0));
-      }
-      low_ = t - spacing;
-      high_ = t;
-      break;
-    }
-    before = slope;
-  }
-  ++slope_count_;
-  Order again = ask(Operation::kSlope);
-  again.reals = {static_cast<float>(low_), static_cast<float>(high_)};
-  return slope_count_ > kSlopeCountLimit ? move(high_) : again;
-}
-
-// ---- Jacobi methods.
-
-Order Conductor::start_jacobi() {
-  ++effort_.solves;
-  solve_iterations_ = 0;
-  batch_ = is_any_remote_ ? 1 : 8;
-  least_error_ = kUnbounded;
-  Order start = ask(Operation::kStart);
-  start.flags = effort_.method == Method::kJacobi ? kWithScalars : kWithBlocks;
-  return start;
-}
-
-/// Iterations between two looks at the exact residual.
-std::uint32_t Conductor::jacobi_span() const {
-  constexpr std::uint32_t kCountMax = 1000;
-  const std::uint32_t count = effort_.module_count < kCountMax ? effort_.module_count : kCountMax;
-  return 1000 + 10 * count * count;
-}
-
-/// The slowest mode of an arm decays over a time that grows with the fourth power of its length. So
-/// it is only without any progress over half of all iterations that the method is stuck.
-bool Conductor::is_jacobi_stuck() {
-  if (effort_.iterations < check_at_) {
-    return false;
-  }
-  const bool is_stuck = error_ > 0.999 * check_error_;
-  check_error_ = error_;
-  check_at_ = 2 * effort_.iterations;
-  return is_stuck;
-}
-
-Order Conductor::after_jacobi(const Setup& setup, const Report& report) {
-  effort_.iterations += batch_;
-  solve_iterations_ += batch_;
-  const auto error = static_cast<double>(report.error());
-  const bool is_diverging = !is_number(error) || error > 1e6 * (1 + least_error_);
-  if (is_diverging || effort_.iterations > setup.iteration_count_max) {
-    return give_up(setup);
-  }
-  least_error_ = error < least_error_ ? error : least_error_;
-  // Now and then rounding is cleared away, at the price of two sweeps.
-  if (error < 0.5 * target_ || solve_iterations_ >= jacobi_span()) {
-    return move(1);
-  }
-  const std::uint32_t grown = is_any_remote_ ? 1U : 1U + solve_iterations_ / 8;
-  batch_ = static_cast<std::uint16_t>(grown < kJacobiCountMax ? grown : kJacobiCountMax);
-  Order jacobi = ask(Operation::kJacobi);
-  jacobi.count = batch_;
-  return jacobi;
-}
-
 // ---- The end.
 
 namespace {
@@ -683,7 +397,7 @@ Order Conductor::after_corners(const Setup& setup, const Report& report) {
 
 /// The law that has an answer for every robot.
 Order Conductor::begin_unilateral(const Setup& setup) {
-  take_safest_method(setup);
+  take_safest_method();
   return begin_law(setup, true);
 }
 

@@ -80,7 +80,7 @@ Order Conductor::settled(const Setup& setup, [[maybe_unused]] const Report* last
     end_deflation();
   }
   effort_.ratio_error = static_cast<float>(error_);
-  has_motion_ = is_one_sweep() && !is_unilateral_;
+  has_motion_ = !is_unilateral_;
   has_factors_ = has_motion_ && effort_.method == Method::kElimination;
   if (is_comparing_) {
     return may_fall() ? ask(Operation::kCorners) : decide();

@@ -82,20 +82,16 @@ bool Conductor::has_fronts() const { return kHasAllMethods && effort_.method == 
 
 bool Conductor::is_exact() const { return effort_.method == Method::kElimination || has_fronts(); }
 
-bool Conductor::has_gradients(const Setup& setup) {
-  return kHasAllMethods && !setup.only_one_sweep;
-}
-
 /// Fronts come first if they are asked for; with memory for them they come behind elimination and
 /// the polynomial, from which a robot goes on at its next change.
 ///
-/// The unilateral law is for what takes its time: the method with fronts, Newton's method by the
-/// polynomial, or conjugate gradients, whose line search cannot fail.
+/// The unilateral law is for what takes its time: the method with fronts, or Newton's method by the
+/// polynomial.
 void Conductor::choose_one_sweep(const Setup& setup, bool is_unilateral) {
   const bool is_first = setup.method == Method::kFronts || has_fronts();
   const bool has_memory = kHasAllMethods && may_have_fronts_ && is_first;
   if (is_unilateral) {
-    take_safest_method(setup);
+    take_safest_method();
   } else if (has_many_loops_ || is_any_remote_) {
     const std::uint32_t many = planned_count_ > kPlannedMax ? planned_count_ : 0U;
     const bool is_small = effort_.module_count <= kFrontModulesMax + many;
@@ -269,8 +265,8 @@ Order Conductor::after_jump(const Setup& setup, const Report& report, bool was_a
   const bool is_cycle =
       !has_fronts() && (was_accurate || is_newton_) && was_seen(report.states_hash());
   if (is_cycle || effort_.contact_iterations > contact_iterations_max_) {
-    // Only exact iterations are certain to go round in circles: conjugate gradients try first.
-    return leave_one_sweep(setup, is_cycle && (is_elimination || is_newton_));
+    // Only exact iterations are certain to go round in circles: others give way to a safer method.
+    return leave_one_sweep(setup, is_cycle && (is_elimination || is_newton_ || is_uneven()));
   }
   error_best_ = kUnbounded;
   stagnation_count_ = 0;
@@ -398,8 +394,8 @@ Order Conductor::leave_fronts(const Setup& setup, bool has_no_room) {
                                               : begin_law(setup, true);
 }
 
-/// All gives way to fronts where there is memory for them, else to Newton's method, and that to
-/// conjugate gradients where there are any.
+/// All gives way to fronts where there is memory for them, else to Newton's method, and that to the
+/// next law.
 Order Conductor::leave_one_sweep(const Setup& setup, bool is_unilateral) {
   if (is_seeking()) {
     return leave_trial(setup, !is_unilateral);
@@ -417,24 +413,24 @@ Order Conductor::leave_one_sweep(const Setup& setup, bool is_unilateral) {
   if (is_newton_ && is_unilateral && !is_unilateral_) {
     return begin_law(setup, true);
   }
-  if (is_newton_ && !has_gradients(setup)) {
+  if (is_newton_) {
     return give_up(setup);
   }
-  has_left_newton_ = is_newton_;
   may_have_fronts_ = may_have_fronts_ && !has_fronts();
-  take_safest_method(setup);
-  return begin_law(setup, is_unilateral || (has_left_newton_ && is_unilateral_));
+  take_safest_method();
+  return begin_law(setup, is_unilateral);
 }
 
 /// What takes over where no other method settles, and under the unilateral law.
-void Conductor::take_safest_method(const Setup& setup) {
+void Conductor::take_safest_method() {
+  is_newton_ = !(kHasAllMethods && may_have_fronts_);
+  effort_.method = is_newton_ ? Method::kPolynomial : Method::kFronts;
+}
+
+/// The method that it takes; trials by the polynomial are Newton's method in any case.
+bool Conductor::is_safest_method() const {
   const bool has_memory = kHasAllMethods && may_have_fronts_;
-  const bool is_newton_next =
-      is_one_sweep() && setup.is_cubic() && !is_uneven() && !has_left_newton_;
-  is_newton_ = !has_memory && (is_newton_next || !has_gradients(setup));
-  effort_.method = has_memory   ? Method::kFronts
-                   : is_newton_ ? Method::kPolynomial
-                                : Method::kConjugateGradients;
+  return effort_.method == (has_memory ? Method::kFronts : Method::kPolynomial);
 }
 
 double Conductor::unilateral_gamma() const {
@@ -459,10 +455,10 @@ void Conductor::begin_states() {
   seen_count_ = 0;
   stands_in_ = is_newton_;
   is_solved_ = false;
-  enough_ = kSolvedShare * kRatioTolerance;
+  enough_ = kSolvedShare * (is_uneven() ? kUnevenTolerance : kRatioTolerance);
 }
 
-// ---- Newton's method by the polynomial, in a robot without conjugate gradients.
+// ---- Newton's method by the polynomial.
 
 /// After an iteration: is the next one another of the same linear problem, or are the facets' own
 /// forces looked up, and, where they are in balance, their states?
@@ -473,9 +469,9 @@ void Conductor::steer_newton(double error) {
     return;
   }
   const double least = kReductionTilting * error;
-  const double enough = kSolvedShare * kRatioTolerance * scale;
+  const double enough = kSolvedShare * (is_uneven() ? uneven_target() : kRatioTolerance * scale);
   enough_ = least > enough ? least : enough;
-  is_solved_ = error <= kStateTolerance * scale;
+  is_solved_ = error <= (is_uneven() ? uneven_target() : kStateTolerance * scale);
   stands_in_ = !kept_states_ || !is_solved_;
 }
 

@@ -53,19 +53,16 @@ bool Conductor::is_doubted() const {
          (may_fall() || ratio_ > (is_uneven() ? 0 : kDoubtedFrom)) && !mechanics::breaks(ratio_);
 }
 
-/// Clusters of modules keep what would have to be forgotten, and a Jacobi method looks states up
-/// before it has a solution. Robots of those methods are not safe where they are doubted.
-bool Conductor::may_seek() const {
-  return kSeeksOthers && is_doubted() && !may_have_clusters() && !is_jacobi();
-}
+/// Clusters of modules keep what would have to be forgotten: robots with them are not safe where
+/// they are doubted.
+bool Conductor::may_seek() const { return kSeeksOthers && is_doubted() && !may_have_clusters(); }
 
 /// Do contact states say whether it falls?
 bool Conductor::may_fall() const { return is_uneven() && !is_fixed_; }
 
 /// States go round in circles. May there be a solution that falls?
 bool Conductor::may_hang_by_foot() const {
-  return kSeeksOthers && may_fall() && !is_jacobi() && !is_unilateral_ &&
-         seeking_ == Seeking::kNotYet;
+  return kSeeksOthers && may_fall() && !is_unilateral_ && seeking_ == Seeking::kNotYet;
 }
 
 /// Are the states those that were found first, and want to be? Or not those that were tried?
@@ -118,7 +115,7 @@ Order Conductor::after_seek(const Setup& setup, const Report& report) {
   }
   constexpr std::uint32_t kPressing = mechanics::ContactState::kCodeCount - 1;
   const bool has_few = report.count <= kFewFeet * kPressing && effort_.module_count <= kFewModules;
-  if (is_first && is_by_one_foot_ && has_few && (is_exact() || !is_one_sweep())) {
+  if (is_first && is_by_one_foot_ && has_few && is_exact()) {
     tries_each_state_ = true;
     was_tried_ = false;
     return seek(0);
@@ -145,7 +142,7 @@ Order Conductor::try_states() {
   if (has_fronts()) {
     return tree_iteration();
   }
-  return is_one_sweep() ? first_iteration() : move(0);
+  return first_iteration();
 }
 
 /// First facets tell their keys one by one and open, by orders of no state; then all are open.
@@ -175,7 +172,7 @@ Order Conductor::next_state(const Setup& setup) {
     }
     code = 0;
   }
-  take_safest_method(setup);
+  take_safest_method();
   return begin_anew(setup, true);
 }
 
@@ -187,7 +184,7 @@ Order Conductor::next_trial(const Setup& setup) {
   other_fails_ = other_fails_ || (next_key_ != 0 && trial_count_ == kTrialsMax);
   const bool has_next = next_key_ != 0 && !other_fails_;
   if (is_by_one_foot_ && !has_next) {
-    take_safest_method(setup);
+    take_safest_method();
     return begin_anew(setup, true);
   }
   trial_count_ = static_cast<std::uint8_t>(trial_count_ + 1);
@@ -210,8 +207,8 @@ Order Conductor::after_trial(const Setup& setup) {
     return leave_trial(setup, false);
   }
   is_newton_ = was_newton_;
-  if (seeks_again(setup)) {
-    return seek_by_gradients(setup);
+  if (seeks_again()) {
+    return seek_more_safely(setup);
   }
   seeking_ = Seeking::kDone;
   return settled(setup);
@@ -238,18 +235,16 @@ Order Conductor::after_corners_otherwise(const Setup& setup, bool is_standing) {
 Order Conductor::leave_trial(const Setup& setup, bool is_lost) {
   if (tries_each_state_ && is_lost && !was_tried_) {
     was_tried_ = true;
-    has_history_ = false;
     return try_states();
   }
   is_trial_lost_ = is_trial_lost_ || is_lost;
   if (seeking_ == Seeking::kTrying) {
-    const bool is_safest = is_by_one_foot_ || !is_one_sweep() || !has_gradients(setup);
-    other_fails_ = other_fails_ || (is_lost && is_safest);
+    other_fails_ = other_fails_ || (is_lost && (is_by_one_foot_ || is_safest_method()));
     return next_trial(setup);
   }
   is_newton_ = was_newton_;
-  if (seeks_again(setup)) {
-    return seek_by_gradients(setup);
+  if (seeks_again()) {
+    return seek_more_safely(setup);
   }
   return begin_anew(setup, false);
 }
@@ -263,15 +258,14 @@ Order Conductor::begin_anew(const Setup& setup, bool is_unilateral) {
   return begin;
 }
 
-/// On few feet that are nearly open a one-sweep method may converge from rest, but not in a trial.
-bool Conductor::seeks_again(const Setup& setup) const {
-  return kSeeksOthers && is_trial_lost_ && !other_fails_ && is_one_sweep() && has_gradients(setup);
+/// On few feet that are nearly open a method may converge from rest, but not in a trial.
+bool Conductor::seeks_again() const {
+  return kSeeksOthers && is_trial_lost_ && !other_fails_ && !is_safest_method();
 }
 
 /// All of it from the beginning.
-Order Conductor::seek_by_gradients(const Setup& setup) {
-  is_newton_ = false;
-  effort_.method = Method::kConjugateGradients;
+Order Conductor::seek_more_safely(const Setup& setup) {
+  take_safest_method();
   return begin_law(setup, false);
 }
 
@@ -294,7 +288,7 @@ Order Conductor::after_hold(const Report& report) {
     stagnation_count_ = 0;
     target_ = is_uneven() ? kUnevenTolerance : kRatioTolerance;
     begin_states();
-    return has_fronts() ? tree_iteration() : is_one_sweep() ? first_iteration() : move(0);
+    return has_fronts() ? tree_iteration() : first_iteration();
   }
   open_held_count_ = report.open_held_count();
   if (kHasSurroundings && is_second_) {

@@ -75,7 +75,7 @@ bool follow_state(Node& node, const ContactSetting& contact, bool is_kept) {
     node.wanted = node.state;
     return false;
   }
-  if (!look_up_states(node, contact, {}, 0)) {
+  if (!look_up_states(node, contact)) {
     return false;
   }
   take_states(node);

@@ -93,14 +93,6 @@ Vec6<double> symmetric_product(const Surroundings& node, const ContactSetting& c
   });
 }
 
-Vec6<double> prescribed_force(const Surroundings& node, const ContactSetting& contact,
-                              const Vec6<double>& u) {
-  return sum_of(node, u, [&](const TouchingFacet& facet, const Vec6<double>& local) {
-    return mechanics::contact_force(
-        contact.facet, prescribed_state(facet, contact, local, kPressureTie), facet.is_held, local);
-  });
-}
-
 bool look_up_states(Surroundings& node, const ContactSetting& contact, const Vec6<double>& u,
                     double tie) {
   bool has_changed = false;

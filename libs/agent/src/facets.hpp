@@ -34,8 +34,6 @@ base::Vec6<double> facet_force(const Surroundings& node, const ContactSetting& c
                                const base::Vec6<double>& u);
 base::Vec6<double> symmetric_product(const Surroundings& node, const ContactSetting& contact,
                                      const base::Vec6<double>& u);
-base::Vec6<double> prescribed_force(const Surroundings& node, const ContactSetting& contact,
-                                    const base::Vec6<double>& u);
 bool look_up_states(Surroundings& node, const ContactSetting& contact, const base::Vec6<double>& u,
                     double tie);
 void take_states(Surroundings& node);
@@ -178,14 +176,12 @@ inline mechanics::ContactState other_state(const mechanics::ContactState& found)
   return {.pressed = !found.pressed};
 }
 
-/// Looks up the states that the law prescribes at u + t g. True: some are not those in use.
-inline bool look_up_states(Node& node, const ContactSetting& contact, const base::Vec6<float>& g,
-                           double t) {
+/// Looks up the states that the law prescribes. True: some are not those in use.
+inline bool look_up_states(Node& node, const ContactSetting& contact) {
   if (Surroundings* surroundings = surroundings_of(node); surroundings != nullptr) {
-    return surrounded::look_up_states(*surroundings, contact, position_along(node, g, t),
-                                      kPressureTie);
+    return surrounded::look_up_states(*surroundings, contact, node.u, kPressureTie);
   }
-  node.wanted = state_along(node, contact, g, t);
+  node.wanted = prescribed_state(node, contact);
   return node.is_ground && !(node.wanted == node.state);
 }
 

@@ -22,7 +22,6 @@ constexpr MethodTable kPolynomial =
     condensing_table_of<PolynomialIteration, &MethodState::polynomial>();
 constexpr MethodTable kClusters = condensing_table_of<RigidClusters, &MethodState::clusters>();
 constexpr MethodTable kFronts = table_of<FrontElimination, &MethodState::fronts>();
-constexpr MethodTable kGradients = table_of<KrylovAndJacobi, &MethodState::gradients>();
 
 }  // namespace
 
@@ -37,8 +36,6 @@ const MethodTable* method_in(Course course) {
       return kHasAllMethods ? &kClusters : nullptr;
     case Course::kFronts:
       return kHasAllMethods ? &kFronts : nullptr;
-    case Course::kGradients:
-      return kHasAllMethods ? &kGradients : nullptr;
     default:
       return nullptr;
   }

@@ -6,10 +6,8 @@
 
 /// Does the program have all methods (method.hpp)? One with HOLDFAST_AGENT_ONE_SWEEP_ONLY, for
 /// modules with little flash, has elimination and the polynomial: what takes one sweep an iteration
-/// and needs no more memory or code than they do. Where conjugate gradients would take over it goes
-/// on with Newton's method by the polynomial (conductor.hpp). All modules of such a robot must be
-/// told, Setup::only_one_sweep. What the root does with other methods, and their messages, is left
-/// out.
+/// and needs no more memory or code than they do. All modules of such a robot must be told,
+/// Setup::only_one_sweep. What the root does with other methods, and their messages, is left out.
 namespace holdfast::agent {
 
 #ifdef HOLDFAST_AGENT_ONE_SWEEP_ONLY
@@ -47,7 +45,7 @@ constexpr bool is_resume(wire::Operation operation) {
 inline constexpr bool kJudgesFaces = kKeepsAnswers;
 
 /// Are further solutions of the regularised law sought (conductor_seeking.cpp)? Left out together
-/// with conjugate gradients.
+/// with fronts.
 inline constexpr bool kSeeksOthers = kHasAllMethods;
 
 }  // namespace holdfast::agent

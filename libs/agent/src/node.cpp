@@ -25,14 +25,6 @@ Vec6<double> beam_forces(const Setup& setup, Faces faces, const Vec6<double>& u)
 
 }  // namespace
 
-Vec6<double> position_along(const Node& node, const Vec6<float>& g, double t) {
-  Vec6<double> u = node.u;
-  for (std::size_t i = 0; i < 6; ++i) {
-    u[i] += t * static_cast<double>(g[i]);
-  }
-  return u;
-}
-
 void prepare(Setup& setup) {
   setup.beam = mechanics::beam_stiffness(setup.section);
   const mechanics::BeamSection<double>& section = setup.section;
@@ -67,15 +59,6 @@ void reset(Node& node) {
 Vec6<double> load_of(const Node& node, const Setup& setup) {
   const Surroundings* surroundings = surroundings_of(node);
   return surroundings != nullptr ? surroundings->load : Vec6<double>{0, 0, -setup.weight_n};
-}
-
-Gradients gradients_at_rest(const Node& node, const Setup& setup) {
-  Gradients rest{};
-  if (!node.is_fixed) {
-    rest.r = base::converted<float>(load_of(node, setup));
-  }
-  rest.r_start = rest.r;
-  return rest;
 }
 
 void form_diagonal(Node& node, const Setup& setup, const ContactSetting& contact, Faces faces,
@@ -116,16 +99,6 @@ Vec6<double> diagonal_column(const Node& node, const Setup& setup, const Contact
   return image;
 }
 
-Vec6<float> scalar_diagonal(const Node& node, const Setup& setup, const ContactSetting& contact,
-                            Faces faces) {
-  Vec6<float> diagonal{};
-  for (int i = 0; i < 6; ++i) {
-    const auto row = static_cast<std::size_t>(i);
-    diagonal[row] = static_cast<float>(diagonal_column(node, setup, contact, faces, i)[row]);
-  }
-  return diagonal;
-}
-
 Vec6<float> solve_diagonal(const Node& node, Vec6<float> vector) {
   if (node.is_fixed) {
     return {};
@@ -164,26 +137,11 @@ Vec6<double> residual(const Node& node, const Setup& setup, const ContactSetting
   return rest;
 }
 
-mechanics::ContactState state_along(const Node& node, const ContactSetting& contact,
-                                    const Vec6<float>& g, double t) {
+mechanics::ContactState prescribed_state(const Node& node, const ContactSetting& contact) {
   if (!node.is_ground) {
     return {.pressed = false};
   }
-  return mechanics::contact_state(
-      contact.facet, mechanics::trial_force(contact.facet, position_along(node, g, t)));
-}
-
-Vec6<double> facet_force_along(const Node& node, const ContactSetting& contact,
-                               const Vec6<float>& g, double t) {
-  if (!node.is_ground) {
-    return {};
-  }
-  const Vec6<double> u = position_along(node, g, t);
-  const Surroundings* surroundings = surroundings_of(node);
-  if (surroundings != nullptr) {
-    return surrounded::prescribed_force(*surroundings, contact, u);
-  }
-  return mechanics::contact_force(contact.facet, state_along(node, contact, g, t), node.is_held, u);
+  return mechanics::contact_state(contact.facet, mechanics::trial_force(contact.facet, node.u));
 }
 
 double ratio_error(const Vec6<double>& residual, const Setup& setup,

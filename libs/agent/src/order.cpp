@@ -240,13 +240,6 @@ constexpr void real_fields(auto& codec, std::span<float> reals) {
   }
 }
 
-/// The degree of a preconditioner.
-constexpr void degree_field(auto& codec, std::uint16_t& count) {
-  auto degree = static_cast<std::uint8_t>(count);
-  codec.u8(degree);
-  count = degree;
-}
-
 constexpr std::uint8_t kClusterFlags = kUnilateralLaw | kOneSweep | kWithIterations;
 constexpr std::uint8_t kBeginFlags = kClusterFlags | (kHasAllMethods ? kWithFronts : 0);
 
@@ -332,28 +325,6 @@ constexpr void mask_fields(auto& codec, Order& order) {
   }
 }
 
-/// Of conjugate gradients and the Jacobi methods.
-constexpr void solve_fields(auto& codec, Order& order) {
-  switch (order.operation) {
-    case Operation::kLow:
-      return codec.flags(order.flags, kFollowStates);
-    case Operation::kStart:
-      codec.flags(order.flags, kAdoptStates | kWithScalars | kWithBlocks);
-      return degree_field(codec, order.count);
-    case Operation::kJacobi:
-      return codec.u16(order.count, 1, kJacobiCountMax);
-    case Operation::kGradient:
-      degree_field(codec, order.count);
-      break;
-    case Operation::kSlope:
-      codec.flags(order.flags, kExchangeFirst | kMixProducts);
-      break;
-    default:
-      break;
-  }
-  real_fields(codec, std::span(order.reals).first(2));
-}
-
 constexpr void seek_fields(auto& codec, Order& order) {
   codec.flags(order.flags, kRemember | (kHasSurroundings ? kOneFoot : 0));
   codec.i32(order.mass);
@@ -381,14 +352,6 @@ constexpr void fields(auto& codec, Order& order) {
       codec.flags(order.flags, order.operation == Operation::kBegin ? kBeginFlags : kClusterFlags);
       codec.u16(order.count, 0, kDegreeMax);
       return real_fields(codec, std::span(order.reals).first(2));
-    case Operation::kHigh:
-    case Operation::kLow:
-    case Operation::kStart:
-    case Operation::kGradient:
-    case Operation::kJacobi:
-    case Operation::kSlope:
-      codec.require(kHasAllMethods);
-      return kHasAllMethods ? solve_fields(codec, order) : void();
     case Operation::kHold:
       return codec.flags(order.flags, kReleaseOpen | kFreeOpen);
     case Operation::kVerdict:
@@ -450,21 +413,6 @@ constexpr void worst_fields(auto& codec, Report& report) {
   real_fields(codec, std::span(report.reals).first(1));
   codec.cell(report.cell);
   connection_fields(codec, report.direction, report, kLimitBits | kGapOpens | kFacetSlips);
-}
-
-/// Of conjugate gradients and the Jacobi methods.
-constexpr void solve_report_fields(auto& codec, Operation operation, Report& report) {
-  switch (operation) {
-    case Operation::kLow:
-      return residual_fields(codec, report);
-    case Operation::kJacobi:
-      return real_fields(codec, std::span(report.reals).first(1));
-    case Operation::kSlope:
-      return real_fields(codec, std::span(report.reals).first(5));
-    default:
-      real_fields(codec, std::span(report.reals).first(2));
-      codec.short_real(report.reals[2]);
-  }
 }
 
 constexpr void along_fields([[maybe_unused]] auto& codec, [[maybe_unused]] Report& report) {
@@ -582,12 +530,6 @@ constexpr void fields(auto& codec, Operation operation, Report& report) {
     case Operation::kIterateLast:
     case Operation::kResumeDeflated:
       return kKeepsAnswers ? deflated_report_fields(codec, operation, report) : void();
-    case Operation::kLow:
-    case Operation::kStart:
-    case Operation::kGradient:
-    case Operation::kJacobi:
-    case Operation::kSlope:
-      return kHasAllMethods ? solve_report_fields(codec, operation, report) : void();
     case Operation::kHold:
     case Operation::kClusters:
     case Operation::kNext:
@@ -612,7 +554,6 @@ constexpr void fields(auto& codec, Operation operation, Report& report) {
       codec.flags(report.flags, kNewLinks);
       return codec.u32(report.count);
     case Operation::kBegin:
-    case Operation::kHigh:
     case Operation::kFactor:
       return;
   }
@@ -627,11 +568,8 @@ static_assert([] {
     Ruler up(kOrderAt);
     Report report;
     fields(up, row.operation, report);
-    const bool is_of_solve =
-        (row.operation >= Operation::kHigh && row.operation <= Operation::kSlope) ||
-        row.operation == Operation::kSeek;
-    const bool is_known =
-        (kKeepsAnswers || row.operation < Operation::kRenew) && (kHasAllMethods || !is_of_solve);
+    const bool is_known = (kKeepsAnswers || row.operation < Operation::kRenew) &&
+                          (kSeeksOthers || row.operation != Operation::kSeek);
     if (is_known && (down.bytes() != row.order_bytes || up.bytes() != row.report_bytes)) {
       return false;
     }
@@ -696,7 +634,6 @@ void merge(Operation operation, Report& into, const Report& from) {
       return merge_mass(into, from);
     case Operation::kRenew:
       return kKeepsAnswers ? merge_renewal(into, from) : void();
-    case Operation::kLow:
     case Operation::kIterate:
     case Operation::kTreeIterate:
       return merge_residual(into, from);

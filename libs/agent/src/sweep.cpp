@@ -56,8 +56,7 @@ Course course_after(const Order& order, Course course) {
     case Operation::kResumeDeflated:
       return (order.flags & kWithIterations) == 0 ? Course::kElimination : Course::kPolynomial;
     case Operation::kBegin:
-      return (order.flags & kOneSweep) == 0         ? Course::kGradients
-             : has_fronts(order)                    ? Course::kFronts
+      return has_fronts(order)                      ? Course::kFronts
              : (order.flags & kWithIterations) == 0 ? Course::kElimination
                                                     : Course::kPolynomial;
     case Operation::kClusters:
@@ -178,9 +177,8 @@ bool Sweep::is_in_course(const Workspace& ws, const Order& order) const {
     case Operation::kSeek:
       return kSeeksOthers && is_good_seek(ws, order);
     default:
-      return course_ == Course::kGradients ||
-             (order.operation == Operation::kHold &&
-              (course_ == Course::kPolynomial || makes_fronts(course_)));
+      return order.operation == Operation::kHold &&
+             (course_ == Course::kPolynomial || makes_fronts(course_));
   }
 }
 
@@ -222,7 +220,8 @@ bool Sweep::is_good_answer(const Workspace& ws, const Answer& answer) const {
 /// Whether an equilibrium may begin by this order. What elimination knows of the tree lives until
 /// another method begins.
 bool Sweep::is_good_begin(const Workspace& ws, const Order& order) const {
-  if (course_ < Course::kWeighed || course_ == Course::kAnswered) {
+  if (course_ < Course::kWeighed || course_ == Course::kAnswered ||
+      (order.flags & kOneSweep) == 0) {
     return false;
   }
   const Course next = course_after(order, course_);
@@ -233,10 +232,7 @@ bool Sweep::is_good_begin(const Workspace& ws, const Order& order) const {
   if (makes_fronts(next)) {
     return method_in(next) != nullptr && ws.front_memory() != nullptr && order.count == 0;
   }
-  const bool has_iterations = (order.flags & kWithIterations) != 0;
-  return method_in(next) != nullptr &&
-         (next == Course::kGradients ? !has_iterations && order.count == 0
-                                     : has_iterations && (order.flags & kOneSweep) != 0);
+  return method_in(next) != nullptr && (order.flags & kWithIterations) != 0;
 }
 
 bool Sweep::is_good_resume(const Workspace& ws, const Order& order) const {
@@ -255,7 +251,7 @@ bool Sweep::is_good_seek(const Workspace& ws, const Order& order) const {
            (order.key() & kStateBits) < mechanics::ContactState::kCodeCount) ||
           (order.flags == kRemember && order.key() == 0)) &&
          (course_ == Course::kElimination || course_ == Course::kPolynomial ||
-          course_ == Course::kGradients || makes_fronts(course_));
+          makes_fronts(course_));
 }
 
 /// Whether an equilibrium may begin from what is kept, or an iteration go along it, for which a

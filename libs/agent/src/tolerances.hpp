@@ -37,25 +37,11 @@ inline constexpr double kErrorLeast = 2e-8;
 /// of the robot's own: single precision of what a way of a thousand modules carries.
 inline constexpr double kFaceTolerance = 1e-5;
 
-/// How much smaller the error bound becomes in one linear solve, at most. Single precision rarely
-/// gives more than five digits in one go; a tilting facet's stand-in tangent deserves fewer. But
-/// where a robot hangs on its weak springs, as it may away from a level floor, the outer loop mixes
-/// iterates a hundredfold, and what a solve has left with them.
-inline constexpr double kReductionLeast = 1e-5;
+/// How much smaller the error bound becomes in one linear problem of Newton's method, at most: a
+/// tilting facet's stand-in tangent deserves no better.
 inline constexpr double kReductionTilting = 1e-3;
 
-/// Judgements without progress before a way is given up.
-inline constexpr int kStagnationMax = 8;
-
 inline constexpr std::uint32_t kContactIterationsMax = 100;
-
-/// A full correction will do if it brings the slope of the energy down this far; else the line is
-/// searched so many times, each to a quarter of the interval.
-inline constexpr double kSlopeReduction = 0.1;
-inline constexpr int kSlopeCountMax = 3;
-
-/// The same while not even the first quarter is short enough: a step of no length leads nowhere.
-inline constexpr int kSlopeCountLimit = 16;
 
 /// The weak springs of the unilateral law, as in the exact solver (verdict/assessment.cpp).
 inline constexpr double kUnilateralGamma = 1e-9;

@@ -33,8 +33,8 @@ constexpr std::uint32_t kRetriesPerHop = 10;
 constexpr std::uint8_t kRoundsWithoutEndMax = 16;
 
 /// Messages between two orders, and orders of one round, that set the clock anew: more than a sound
-/// robot ever needs (kDegreeMax vectors twice through each of six faces; kJacobiCountMax iterations
-/// an order). A neighbour that talks without end is not waited for without end.
+/// robot ever needs (kDegreeMax vectors twice through each of six faces). A neighbour that talks
+/// without end is not waited for without end.
 constexpr std::uint16_t kMessagesMax = 0xffff;
 constexpr std::uint16_t kOrdersMax = 0xffff;
 static_assert(2 * 6 * kDegreeMax < kMessagesMax);

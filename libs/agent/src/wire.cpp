@@ -57,7 +57,7 @@ int message_bytes(std::uint8_t type, std::uint8_t second) {
   if (!is_order && !is_report) {
     return kMessageBytes[type];
   }
-  return second > kOperationCount ? 0 : (is_order ? kOrderBytes : kReportBytes)[second];
+  return second > kOperationLast ? 0 : (is_order ? kOrderBytes : kReportBytes)[second];
 }
 
 #ifdef HOLDFAST_AGENT_SMALL_CHECKSUM
@@ -110,15 +110,6 @@ void Writer::u32(std::uint32_t value) {
   size_ += 4;
 }
 
-void Writer::short_real(double value) {
-  if (value != value) {
-    u16(0x7fc0);  // Rounding must not turn what is not a number into one.
-    return;
-  }
-  const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(value));
-  u16(static_cast<std::uint16_t>((bits >> 16U) + ((bits & 0xffffU) != 0 ? 1U : 0U)));
-}
-
 void Writer::real(double value) { u32(std::bit_cast<std::uint32_t>(static_cast<float>(value))); }
 
 void Writer::long_real(double value) {
@@ -161,10 +152,6 @@ std::uint32_t Reader::u32() {
     value |= static_cast<std::uint32_t>(u8()) << (8 * i);
   }
   return value;
-}
-
-float Reader::short_real() {
-  return std::bit_cast<float>(static_cast<std::uint32_t>(u16()) << 16U);
 }
 
 float Reader::real() { return std::bit_cast<float>(u32()); }

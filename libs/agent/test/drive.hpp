@@ -22,7 +22,7 @@ inline constexpr base::Cell kRoot = {1, 2, 3};
 /// A conductor, its setup and its last order.
 class Drive {
  public:
-  explicit Drive(Method method = Method::kConjugateGradients, std::uint16_t depth = 4,
+  explicit Drive(Method method = Method::kFronts, std::uint16_t depth = 4,
                  std::uint32_t census = kCensus) {
     setup.method = method;
     order = conductor.begin(setup, kRoot, census, depth, {.has_fronts = method == Method::kFronts});
@@ -62,19 +62,28 @@ class Drive {
     ASSERT_EQ(order.operation, Operation::kBegin);
   }
 
-  /// From kBegin or a new solve: gradients that find nothing to do, to the next judgement.
+  /// From kBegin or kFactor to the next iteration, whose report is a judgement.
   void to_judgement() {
-    if (order.operation == Operation::kBegin) {
+    while (order.operation == Operation::kBegin || order.operation == Operation::kFactor) {
       next();
     }
-    if (order.operation == Operation::kStart) {
-      next();
-    }
-    ASSERT_EQ(order.operation, Operation::kHigh);
-    ASSERT_EQ(next().operation, Operation::kLow);
+    ASSERT_TRUE(is_iterating());
   }
 
-  Report low(float error, float ratio) const { return {.reals = {error, ratio}}; }
+  bool is_iterating() const {
+    return order.operation == Operation::kTreeIterate || order.operation == Operation::kIterate;
+  }
+
+  /// Every judgement is the same, up to the order behind the last one.
+  void settle(const Report& judgement) {
+    constexpr int kIterationsMax = 10;
+    to_judgement();
+    for (int i = 0; i < kIterationsMax && is_iterating(); ++i) {
+      next(judgement);
+    }
+  }
+
+  static Report judgement(float error, float ratio) { return {.reals = {error, ratio}}; }
 
   void expect_finished(Verdict verdict, Reason reason) {
     EXPECT_EQ(order.operation, Operation::kVerdict);

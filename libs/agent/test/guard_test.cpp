@@ -119,8 +119,7 @@ void disturb(TestNetwork& network, base::Rng& rng) {
 /// Plans and withdrawals at any moment, modules that start again, links that open: whatever the
 /// robot says then, late or given up, is what a neighbour may say.
 TEST(Guard, nothing_that_a_sound_robot_says_is_refused) {
-  constexpr std::array kMethods = {Method::kElimination, Method::kPolynomial,
-                                   Method::kConjugateGradients, Method::kBlockJacobi};
+  constexpr std::array kMethods = {Method::kElimination, Method::kPolynomial};
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     base::Rng rng(seed);
     auto setup = table_setup();
@@ -203,13 +202,11 @@ TEST(Guard, feet_are_near_the_root) {
 TEST(Guard, orders_keep_their_course) {
   expect_refused(row(), {1, "05 03", "05 10", true});
   expect_refused(row(), {1, "05 10", "05 11 01 02 00 00 00 00 00 00 00 00 00 00 00 00 00", true});
-  expect_refused(row(), {1, "05 10", "05 09 02 00 00 00 00 00 00 00 00", true});
+  expect_refused(row(), {1, "05 10", "05 0c 01", true});
   expect_refused(row(), {1, "05 05", "05 05 04 00 00 17 b7 d1 38 00 00 f0 42", true});
   expect_refused(row(), {1, "05 11", "05 10", true}, Method::kPolynomial);
   expect_refused(row(), {1, "05 11", "05 11 08 02 00 00 00 00 00 00 00 00 00 00 00 00 00", true},
                  Method::kPolynomial);
-  expect_refused(row(), {1, "05 08", "05 05 02 00 00 17 b7 d1 38 00 00 f0 42", true},
-                 Method::kConjugateGradients);
 }
 
 /// Four modules in a row are safe, so it is true by chance; but nobody can know it yet, or the
@@ -271,11 +268,11 @@ TEST(Guard, a_neighbour_of_another_lattice_is_counted_and_makes_the_verdict_unce
   EXPECT_EQ(network.agent(0).answer().reason, Reason::kNeighbourSilent);
 }
 
-/// 200 scripts of any bytes, the same ones everywhere; tests/fuzz looks for others.
+/// 400 scripts of any bytes, the same ones everywhere; tests/fuzz looks for others.
 TEST(Guard, no_faulty_module_makes_others_do_what_there_is_not) {
   int changed = 0;
   int refused = 0;
-  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 400; ++seed) {
     base::Rng rng(seed);
     std::vector<std::uint8_t> bytes(40 + rng.below(200));
     for (std::uint8_t& byte : bytes) {

@@ -70,21 +70,21 @@ TEST(Listener, tells_what_packets_of_any_length_carry) {
 }
 
 TEST(Listener, takes_what_is_sent_again_for_what_it_was) {
-  const Packet order = from_hex("05 0a 00 10");
+  const Packet order = from_hex("05 0c 02");
   const Packet hello = from_hex(kGoldenHello);
   wire::Listener listener;
   EXPECT_FALSE(listener.follow(hello));
-  EXPECT_EQ(listener.follow(data_packet(0, order))->order, wire::Operation::kJacobi);
+  EXPECT_EQ(listener.follow(data_packet(0, order))->order, wire::Operation::kHold);
   const auto again = listener.follow(data_packet(0, order));
   EXPECT_EQ(again->type, MessageType::kOrder);
   EXPECT_FALSE(again->order);
   // The same greeting goes on with the session, another one begins anew.
   EXPECT_FALSE(listener.follow(hello));
-  EXPECT_EQ(listener.follow(data_packet(1, order))->order, wire::Operation::kJacobi);
+  EXPECT_EQ(listener.follow(data_packet(1, order))->order, wire::Operation::kHold);
   Packet other = hello;
   other[2] ^= 1U;
   EXPECT_FALSE(listener.follow(other));
-  EXPECT_EQ(listener.follow(data_packet(0, order))->order, wire::Operation::kJacobi);
+  EXPECT_EQ(listener.follow(data_packet(0, order))->order, wire::Operation::kHold);
 }
 
 TEST(Listener, hears_nothing_in_pings_and_acknowledgements) {

@@ -35,15 +35,6 @@ Counts counts_of(Operation operation, std::uint8_t flags = 0, std::uint16_t coun
 TEST(Operations, exchange_as_often_as_the_document_says) {
   EXPECT_EQ(counts_of(Operation::kBegin), (Counts{0, kDegree}));
   EXPECT_EQ(counts_of(Operation::kBegin, kOneSweep, 0), Counts{});
-  EXPECT_EQ(counts_of(Operation::kHigh, 0, 0), (Counts{1, 0}));
-  EXPECT_EQ(counts_of(Operation::kLow, kFollowStates, 0), (Counts{1, 0}));
-  EXPECT_EQ(counts_of(Operation::kStart, kAdoptStates), (Counts{kDegree + 1, 0}));
-  EXPECT_EQ(counts_of(Operation::kStart, kWithScalars, 0), Counts{});
-  EXPECT_EQ(counts_of(Operation::kStart, kWithBlocks, 0), Counts{});
-  EXPECT_EQ(counts_of(Operation::kGradient), (Counts{kDegree + 1, 0}));
-  EXPECT_EQ(counts_of(Operation::kJacobi), (Counts{kDegree, 0}));
-  EXPECT_EQ(counts_of(Operation::kSlope, kExchangeFirst, 0), (Counts{1, 0}));
-  EXPECT_EQ(counts_of(Operation::kSlope, kMixProducts, 0), Counts{});
   EXPECT_EQ(counts_of(Operation::kIterate), (Counts{2, kDegree}));
   EXPECT_EQ(counts_of(Operation::kIterate, kWithClusters | kRestart), (Counts{2, 2 * kDegree + 2}));
   EXPECT_EQ(counts_of(Operation::kTreeIterate, 0, 0), (Counts{2, 0}));

@@ -14,6 +14,7 @@
 #include <set>
 #include <string>
 
+#include "holdfast/agent/operations.hpp"
 #include "holdfast/agent/step_word.hpp"
 #include "holdfast/base/rng.hpp"
 #include "test_setup.hpp"
@@ -25,8 +26,6 @@ using namespace holdfast::agent::test;
 using wire::Operation;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
-Operation operation_at(int i) { return static_cast<Operation>(i); }
 
 /// A small multiple of 1/8: sums of some hundred are exact.
 float exact_real(base::Rng& rng) {
@@ -119,9 +118,6 @@ Report random_report(Operation operation, base::Rng& rng) {
   for (float& real : report.energies) {
     real = exact_real(rng);
   }
-  if (operation == Operation::kStart || operation == Operation::kGradient) {
-    report.reals[2] = static_cast<float>(rng.below(16)) / 8;  // Seven digits of fraction hold it.
-  }
   if (operation == Operation::kWord) {
     report.mask = static_cast<std::uint8_t>(rng.below(4));
     report.number = static_cast<std::uint32_t>(random_word(rng));
@@ -168,13 +164,12 @@ Report merged(Operation operation, Report into, const Report& from) {
 
 TEST(Order, every_order_comes_back) {
   base::Rng rng(1);
-  for (int i = 1; i <= wire::kOperationCount; ++i) {
+  for (const OperationInfo& row : kOperations) {
     for (int round = 0; round < 100; ++round) {
-      const auto message = encode(random_order(operation_at(i), rng));
-      EXPECT_EQ(message.bytes().size(),
-                static_cast<std::size_t>(wire::message_bytes(5, static_cast<std::uint8_t>(i))));
+      const auto message = encode(random_order(row.operation, rng));
+      EXPECT_EQ(message.bytes().size(), std::size_t{row.order_bytes});
       const Order back = decode_order(message.bytes());
-      EXPECT_EQ(back.operation, operation_at(i));
+      EXPECT_EQ(back.operation, row.operation);
       EXPECT_EQ(to_hex(encode(back).bytes()), to_hex(message.bytes()));
     }
   }
@@ -182,12 +177,11 @@ TEST(Order, every_order_comes_back) {
 
 TEST(Order, every_report_comes_back) {
   base::Rng rng(2);
-  for (int i = 1; i <= wire::kOperationCount; ++i) {
+  for (const OperationInfo& row : kOperations) {
     for (int round = 0; round < 100; ++round) {
-      const auto message = encode(operation_at(i), random_report(operation_at(i), rng));
-      EXPECT_EQ(message.bytes().size(),
-                static_cast<std::size_t>(wire::message_bytes(6, static_cast<std::uint8_t>(i))));
-      EXPECT_EQ(text_of(operation_at(i), decode_report(message.bytes())), to_hex(message.bytes()));
+      const auto message = encode(row.operation, random_report(row.operation, rng));
+      EXPECT_EQ(message.bytes().size(), std::size_t{row.report_bytes});
+      EXPECT_EQ(text_of(row.operation, decode_report(message.bytes())), to_hex(message.bytes()));
     }
   }
 }
@@ -212,9 +206,6 @@ TEST(Order, fields_come_back_where_they_were) {
   back = there_and_back(Operation::kAngles, sent, rng);
   EXPECT_EQ(back.mass, sent.mass);
   EXPECT_EQ(back.moment, sent.moment);
-  back = there_and_back(Operation::kSlope, sent, rng);
-  EXPECT_EQ(back.flags, sent.flags);
-  EXPECT_EQ(back.reals, (std::array<float, 3>{sent.reals[0], sent.reals[1], 0}));
   back = there_and_back(Operation::kIterate, sent, rng);
   EXPECT_EQ(back.flags, sent.flags);
   EXPECT_EQ(back.count, sent.count);
@@ -231,11 +222,11 @@ TEST(Order, fields_come_back_where_they_were) {
   EXPECT_EQ(mass_back.count, mass.count);
   EXPECT_EQ(mass_back.moment, mass.moment);
   EXPECT_EQ(mass_back.extent, mass.extent);
-  const Report low = random_report(Operation::kLow, rng);
-  const Report low_back = through_wire(Operation::kLow, low);
-  EXPECT_EQ(low_back.reals[1], low.reals[1]);
-  EXPECT_EQ(low_back.number, low.number);
-  EXPECT_EQ(low_back.extent, low.extent);
+  const Report iteration = random_report(Operation::kTreeIterate, rng);
+  const Report iteration_back = through_wire(Operation::kTreeIterate, iteration);
+  EXPECT_EQ(iteration_back.reals[1], iteration.reals[1]);
+  EXPECT_EQ(iteration_back.number, iteration.number);
+  EXPECT_EQ(iteration_back.extent, iteration.extent);
 }
 
 TEST(Order, fields_of_what_is_kept_come_back_where_they_were) {
@@ -279,8 +270,8 @@ TEST(Order, fields_of_what_is_kept_come_back_where_they_were) {
 /// Corner sets are left out of associativity: of many corners on a line any two may be kept.
 TEST(Order, merging_is_commutative_and_associative) {
   base::Rng rng(4);
-  for (int i = 1; i <= wire::kOperationCount; ++i) {
-    const Operation operation = operation_at(i);
+  for (const OperationInfo& row : kOperations) {
+    const Operation operation = row.operation;
     for (int round = 0; round < 300; ++round) {
       const Report a = through_wire(operation, random_report(operation, rng));
       const Report b = through_wire(operation, random_report(operation, rng));
@@ -290,11 +281,11 @@ TEST(Order, merging_is_commutative_and_associative) {
       EXPECT_EQ(left.corners.stable, right.corners.stable);
       EXPECT_EQ(left.corners.count, right.corners.count);
       left.corners = right.corners = {};
-      EXPECT_EQ(text_of(operation, left), text_of(operation, right)) << i;
+      EXPECT_EQ(text_of(operation, left), text_of(operation, right)) << row.name;
       left = merged(operation, a, b);
       right = merged(operation, b, a);
       left.corners = right.corners = {};
-      EXPECT_EQ(text_of(operation, left), text_of(operation, right)) << i;
+      EXPECT_EQ(text_of(operation, left), text_of(operation, right)) << row.name;
     }
   }
 }
@@ -483,7 +474,7 @@ TEST(Order, the_next_facet_is_the_one_with_the_least_key) {
 }
 
 TEST(Order, changed_facets_do_not_wrap) {
-  const Report many = merged(Operation::kLow, {.extent = 0xfffe}, {.extent = 3});
+  const Report many = merged(Operation::kTreeIterate, {.extent = 0xfffe}, {.extent = 3});
   EXPECT_EQ(many.extent, 0xffff);
 }
 
@@ -493,18 +484,18 @@ TEST(Order, what_is_not_a_number_survives) {
   for (const float other : {-1e30F, 0.5F, 2.0F, kNan}) {
     const Report fine = {.reals = {other, other}};
     const Report bad_ratio = {.reals = {0, kNan}};
-    EXPECT_TRUE(std::isnan(merged(Operation::kLow, bad_ratio, fine).reals[1])) << other;
-    EXPECT_TRUE(std::isnan(merged(Operation::kLow, fine, bad_ratio).reals[1])) << other;
+    EXPECT_TRUE(std::isnan(merged(Operation::kTreeIterate, bad_ratio, fine).reals[1])) << other;
+    EXPECT_TRUE(std::isnan(merged(Operation::kTreeIterate, fine, bad_ratio).reals[1])) << other;
     const Report bad_error = {.reals = {kNan, 0}};
-    EXPECT_TRUE(std::isnan(merged(Operation::kLow, bad_error, fine).reals[0])) << other;
-    EXPECT_TRUE(std::isnan(merged(Operation::kLow, fine, bad_error).reals[0])) << other;
+    EXPECT_TRUE(std::isnan(merged(Operation::kTreeIterate, bad_error, fine).reals[0])) << other;
+    EXPECT_TRUE(std::isnan(merged(Operation::kTreeIterate, fine, bad_error).reals[0])) << other;
     const Report bad_load = {.reals = {kNan}};
     EXPECT_TRUE(std::isnan(merged(Operation::kLoads, bad_load, fine).reals[0])) << other;
     EXPECT_TRUE(std::isnan(merged(Operation::kLoads, fine, bad_load).reals[0])) << other;
     EXPECT_TRUE(std::isnan(merged(Operation::kIterateLast, bad_ratio, fine).reals[1])) << other;
     EXPECT_TRUE(std::isnan(merged(Operation::kIterateLast, fine, bad_ratio).reals[1])) << other;
   }
-  EXPECT_EQ(merged(Operation::kLow, one, one).reals[1], 1.0F);
+  EXPECT_EQ(merged(Operation::kTreeIterate, one, one).reals[1], 1.0F);
 }
 
 /// The worst connection's limit goes with it; that a gap opens or a facet slips is true of all.

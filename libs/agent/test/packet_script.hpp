@@ -27,9 +27,7 @@ class PacketScript {
     constexpr Time kTamperedMax = 3000;
     constexpr Time kQuietMax = 40'000;
     Setup setup = table_setup();
-    setup.method = static_cast<Method>(next() % 5);
-    const bool is_jacobi = setup.method == Method::kJacobi || setup.method == Method::kBlockJacobi;
-    setup.iteration_count_max = is_jacobi ? kJacobiIterationsMax : setup.iteration_count_max;
+    setup.method = static_cast<Method>(next() % 2);
     setup.timing.packet_bytes = next() % 2 == 0 ? wire::kPacketBytesMin : wire::kPacketBytesMax;
     const std::vector<ScriptRobot> robots = script_robots();
     const ScriptRobot& robot = robots[next() % robots.size()];
@@ -57,10 +55,6 @@ class PacketScript {
 
  private:
   using Packet = std::vector<std::uint8_t>;
-
-  /// Jacobi's methods forget slowly: after a lie that opens all feet of four modules and moves them
-  /// by 1e20 mm they take two million iterations. The bound on their number is what ends them.
-  static constexpr std::uint32_t kJacobiIterationsMax = 1500;
 
   /// Room for a checksum.
   static constexpr std::size_t kBodyMax = wire::kPacketBytesMax - wire::kChecksumBytes;

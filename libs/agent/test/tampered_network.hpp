@@ -6,10 +6,12 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <iterator>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "holdfast/agent/operations.hpp"
 #include "test_network.hpp"
 
 namespace holdfast::agent::test {
@@ -197,7 +199,7 @@ class FaultScript {
   /// Runs the robot to its end, or as long as `ticks_max`. False: a module says what there is not.
   bool run(Time ticks_max) {
     Setup setup = table_setup();
-    setup.method = static_cast<Method>(next() % 5);
+    setup.method = static_cast<Method>(next() % 3);
     setup.timing.packet_bytes = next() % 2 == 0 ? wire::kPacketBytesMin : wire::kPacketBytesMax;
     const std::vector<ScriptRobot> robots = script_robots();
     const ScriptRobot& robot = robots[next() % robots.size()];
@@ -225,8 +227,9 @@ class FaultScript {
 
   /// Any message of a type and, of orders and reports, an operation.
   Message random_message() {
-    Message message = {static_cast<std::uint8_t>(1 + next() % 13),
-                       static_cast<std::uint8_t>(1 + next() % wire::kOperationCount)};
+    Message message = {
+        static_cast<std::uint8_t>(1 + next() % 13),
+        static_cast<std::uint8_t>(kOperations[next() % std::size(kOperations)].operation)};
     const bool has_operation = message[0] == 5 || message[0] == 6;
     message.resize(static_cast<std::size_t>(wire::message_bytes(message[0], message[1])));
     for (std::size_t i = has_operation ? 2 : 1; i < message.size(); ++i) {

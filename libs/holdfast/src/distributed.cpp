@@ -223,12 +223,6 @@ verdict::Verdict to_verdict(agent::Verdict verdict) {
 
 const char* name(agent::Method method) {
   switch (method) {
-    case agent::Method::kJacobi:
-      return "jacobi";
-    case agent::Method::kBlockJacobi:
-      return "block-jacobi";
-    case agent::Method::kConjugateGradients:
-      return "cg";
     case agent::Method::kPolynomial:
       return "polynomial";
     case agent::Method::kFronts:
@@ -241,8 +235,7 @@ const char* name(agent::Method method) {
 
 std::optional<agent::Method> find_method(std::string_view name_wanted) {
   for (const agent::Method method :
-       {agent::Method::kJacobi, agent::Method::kBlockJacobi, agent::Method::kConjugateGradients,
-        agent::Method::kPolynomial, agent::Method::kFronts, agent::Method::kElimination}) {
+       {agent::Method::kElimination, agent::Method::kPolynomial, agent::Method::kFronts}) {
     if (name_wanted == name(method)) {
       return method;
     }

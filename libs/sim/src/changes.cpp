@@ -41,10 +41,10 @@ bool has_noise(const LinkModel& link) {
          link.corruption > 0;
 }
 
-/// Whether modules have memory for fronts.
+/// Whether modules have memory for fronts, as those have that know more than a floor.
 bool lends_fronts(const model::Robot& robot, const SimulationOptions& options) {
-  return options.method ? options.method == agent::Method::kFronts
-                        : !options.only_one_sweep && needs_environment(robot, options.step_end);
+  return options.method == agent::Method::kFronts ||
+         (!options.only_one_sweep && needs_environment(robot, options.step_end));
 }
 
 /// Whether modules must keep more planned modules than they have room for themselves, those of a

@@ -169,7 +169,6 @@ agent::Setup make_setup(const model::Robot& robot, const SimulationOptions& opti
       stands_level(robot) && (options.step_end == nullptr || stands_level(*options.step_end));
   setup.method = options.method.value_or(
       options.only_one_sweep || is_level ? agent::Method::kElimination : agent::Method::kFronts);
-  setup.degree_max = options.degree_max;
   setup.only_one_sweep = options.only_one_sweep;
   const bool has_map = needs_environment(robot, options.step_end);
   setup.has_friction =

@@ -68,13 +68,13 @@ TEST(Setup, has_the_facet_as_a_reduced_fraction_of_the_pitch) {
   spec.material.pitch_mm = 40;
   spec.material.facet_mm = 30;
   agent::Setup setup = make_setup(
-      make_robot(spec), {.link = blinky_blocks_v2(), .method = agent::Method::kBlockJacobi});
+      make_robot(spec), {.link = blinky_blocks_v2(), .method = agent::Method::kPolynomial});
   EXPECT_EQ(setup.facet_numerator, 3);
   EXPECT_EQ(setup.facet_denominator, 4);
-  EXPECT_EQ(setup.method, agent::Method::kBlockJacobi);
+  EXPECT_EQ(setup.method, agent::Method::kPolynomial);
   EXPECT_EQ(setup.timing.packet_bytes, 228);
   spec.material.facet_mm = 40;
-  setup = make_setup(make_robot(spec), {.link = unit(), .method = agent::Method::kJacobi});
+  setup = make_setup(make_robot(spec), {.link = unit()});
   EXPECT_EQ(setup.facet_numerator, 1);
   EXPECT_EQ(setup.facet_denominator, 1);
   EXPECT_NEAR(setup.weight_n, 0.06106 * 9.81, 1e-12);

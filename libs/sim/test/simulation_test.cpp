@@ -111,8 +111,7 @@ TEST(Simulation, waits_for_the_facets_of_a_single_module) {
                   .obstacles = {{.from = {}, .to = {}, .cells = {{-1, 0, 0}, {0, -1, 0}}}},
                   .gravity_m_s2 = {{5, 0, -10}}});
   EXPECT_EQ(verdict::assess(robot).verdict, verdict::Verdict::kUnstable);
-  for (const agent::Method method :
-       {agent::Method::kElimination, agent::Method::kConjugateGradients}) {
+  for (const agent::Method method : {agent::Method::kElimination, agent::Method::kPolynomial}) {
     const SimulationResult result = simulate(robot, {.method = method});
     EXPECT_EQ(result.answer.verdict, agent::Verdict::kUnstable)
         << agent::name(result.answer.reason);

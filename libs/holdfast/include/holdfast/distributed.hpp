@@ -149,7 +149,7 @@ const char* name(ErrorKind kind);
 /// "other_solutions", "unstable_by_model" or "unexplained".
 const char* name(Difference difference);
 
-/// "elimination", "polynomial", "cg", "block-jacobi", "jacobi", and back.
+/// "elimination", "polynomial", "fronts", and back.
 const char* name(agent::Method method);
 std::optional<agent::Method> find_method(std::string_view name);
 

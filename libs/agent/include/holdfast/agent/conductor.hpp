@@ -18,60 +18,24 @@
 ///   planned modules -> mass -> safe angles -> [topples: verdict]
 ///   -> equilibrium -> support corners -> [unilateral contact if they disagree] -> loads -> verdict
 ///
-/// Equilibrium. All methods share one outer loop: move, compute the residual precisely, judge,
-/// solve for a correction. It serves four purposes at once: the correction may be found roughly and
-/// in single precision (iterative refinement); contact states change between solves (Newton); the
-/// unsymmetric tangent of a tilting facet is replaced by a symmetric one in the solve (defect
-/// correction, the last two iterations mixed [Anderson 1965]); and the loop ends
-/// by a bound on the error of every load ratio, not by a count.
+/// Equilibrium. All methods share one outer loop: move, compute the residual precisely, judge, find
+/// a correction. It serves three purposes at once: the correction may be found roughly and in
+/// single precision (iterative refinement); contact states change between solves (Newton); and the
+/// loop ends by a bound on the error of every load ratio, not by a count.
 ///
-/// Where one-sweep methods come to no end, and for the unilateral law, there is Newton's method by
-/// the polynomial; conjugate gradients follow where it fails, unless the robot has none
-/// (Setup::only_one_sweep), and in its place where it is not tried: in other lattices than the
-/// cubic one and with supports that are no level floor. Contact states are kept while the linear
-/// problem they make is solved by iterations, as many as it takes; tilting facets act by symmetric
+/// Where a method comes to no end, and for the unilateral law, there are fronts in memory that is
+/// lent, or Newton's method by the polynomial. That keeps contact states while the linear problem
+/// they make is solved by iterations, as many as it takes; tilting facets act by symmetric
 /// stand-ins, so the least energy is what converges. Then one iteration has the facets' own forces
 /// (defect correction), and where these are in balance as far as states need it the next one looks
-/// states up. Under the unilateral law there is no line search: states that come again end as
+/// states up. There is no line search: states that come again under the unilateral law end as
 /// `undecided`.
 ///
-/// What follows a report; where several do, the first that applies.
-///
-///   asked          next
-///   plan, forget   a plan has ended: forget | a cell is planned: plan | too many, disputed:
-///   verdict
-///                  | hosts
-///   hosts          a planned module touches nothing: verdict | mass
-///   mass           modules are missing, too large: verdict | fixed: begin | angles
-///   angles         topples: verdict | begin
-///   begin          elimination: factor | polynomial: iterate | start; clusters is a begin
-///   factor         tree iterate
-///   tree iterate   settled: corners | states have changed: factor | stuck: begin | tree iterate
-///   iterate        settled: corners | stuck: begin | iterate
-///   start          nothing to solve: high | Jacobi: jacobi | gradient
-///   gradient       solved: high, under the unilateral law or to mix two iterates slope | gradient
-///   jacobi         diverges: begin | solved: high | jacobi
-///   slope          found: high | slope
-///   high           low
-///   low            settled: corners | stuck: begin, with the next method or law | start
-///   corners        regularised law, stable: loads | not stable: begin, with the unilateral law
-///                  | unilateral law: hold | of another solution: seek
-///   hold           facets have changed: high | loads
-///   loads          open feet were held: hold, to compare | verdict
-///   verdict        the same again, while it stands | a plan or a module has come: renew
-///   word           another word: word | all are known: stage | they make no plan: verdict
-///   stage          other connections are off: a new round | plan | all are judged: verdict
-///   renew          another plan: renew | the same shape as before: verdict | resume | a new round
-///   iterate last   settled: verdict | as iterate
-///   resume         topples, a planned module touches nothing: verdict | elimination: tree iterate
-///                  | iterate
-///
-/// Where the robot is held there are no corners: settled: loads. Too many iterations, or nothing
-/// safer left: verdict.
+/// Which order may follow which is a table in docs/distributed.md, "What the root does".
 ///
 /// Contact. As in the exact solver: first the paper's law (9)-(12) by Newton's method from "all
-/// stuck"; if its states cycle, or the corners contradict the rigid body, the unilateral law by
-/// Newton's method with a line search, then with open feet released.
+/// stuck"; if its states cycle, or the corners contradict the rigid body, the unilateral law, then
+/// with open feet released.
 namespace holdfast::agent {
 
 /// What modules have been lent memory for (LentMemory).
@@ -133,7 +97,6 @@ class Conductor : private ConductorState {
   static constexpr std::uint8_t kForgottenMax = 200;
 
   Order ask(wire::Operation operation);
-  Order next_of_solve(const Setup& setup, const Report& report);
   Order after_plan(const Report& report, const Planned& planned);
   Order ask_hosts(const Planned& planned);
   bool is_all_hosted(const Report& report, const Planned& planned) const;
@@ -149,10 +112,6 @@ class Conductor : private ConductorState {
   Order after_mass(const Setup& setup, const Report& report);
   Order after_angles(const Setup& setup, const Report& report);
   Order begin_law(const Setup& setup, bool is_unilateral);
-  Order start_solve(bool adopts_states);
-  Order after_start(const Report& report);
-  Order after_gradient(const Setup& setup, const Report& report);
-  Order next_gradient(double gamma, double delta);
   // conductor_iterations.cpp
   void choose_one_sweep(const Setup& setup, bool is_unilateral);
   std::uint16_t iteration_degree() const;
@@ -183,19 +142,12 @@ class Conductor : private ConductorState {
   double iteration_error(const Setup& setup, const Report& report, double bound);
   Order leave_fronts(const Setup& setup, bool has_no_room);
   Order leave_one_sweep(const Setup& setup, bool is_unilateral);
-  void take_safest_method(const Setup& setup);
+  void take_safest_method();
+  bool is_safest_method() const;
   void begin_states();
   void steer_newton(double error);
   int stagnation_max() const;
 
-  Order start_jacobi();
-  Order after_jacobi(const Setup& setup, const Report& report);
-  Order after_slope(const Report& report);
-  Order end_solve();
-  Order move(double length, double mix = 0);
-  Order after_mix(const Report& report);
-  Order judge(const Setup& setup, const Report& report);
-  Order judge_regularised(const Setup& setup, const Report& report);
   Order give_up(const Setup& setup);
   bool stiffens_springs();
   Order settled(const Setup& setup, const Report* last = nullptr);
@@ -254,8 +206,8 @@ class Conductor : private ConductorState {
   Order after_trial(const Setup& setup);
   Order after_corners_otherwise(const Setup& setup, bool is_standing);
   Order leave_trial(const Setup& setup, bool is_lost);
-  bool seeks_again(const Setup& setup) const;
-  Order seek_by_gradients(const Setup& setup);
+  bool seeks_again() const;
+  Order seek_more_safely(const Setup& setup);
   Order conclude(const Setup& setup);
 
   // conductor_stages.cpp
@@ -264,23 +216,12 @@ class Conductor : private ConductorState {
   bool can_resume_stage(const Setup& setup) const;
   Order resume_stage(const Setup& setup, const Report& report);
 
-  bool is_jacobi() const {
-    return effort_.method == Method::kJacobi || effort_.method == Method::kBlockJacobi;
-  }
-
-  bool is_one_sweep() const { return effort_.method == Method::kPolynomial || is_exact(); }
-
   bool has_fronts() const;
-
-  /// Are there conjugate gradients, for what no other method decides?
-  static bool has_gradients(const Setup& setup);
 
   /// Does an iteration solve the linear problem but for rounding?
   bool is_exact() const;
 
   bool was_seen(std::uint32_t hash);
-  std::uint32_t jacobi_span() const;
-  bool is_jacobi_stuck();
 };
 
 }  // namespace holdfast::agent

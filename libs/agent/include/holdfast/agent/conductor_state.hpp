@@ -34,7 +34,6 @@ struct ConductorState {
   Effort effort_;
   base::Cell root_;
   std::uint32_t census_;
-  std::uint16_t degree_;  ///< Degree of the polynomial preconditioner.
   std::uint8_t planned_count_;
   std::uint8_t forgotten_count_;
   PlannedMasks totals_;
@@ -56,7 +55,6 @@ struct ConductorState {
   // Equilibrium.
   bool is_unilateral_;
   bool is_tilting_;
-  bool has_history_;  ///< The last solve was for the same contact states.
 #ifndef HOLDFAST_AGENT_FLOOR_ONLY
   std::uint8_t slack_bits_;  ///< Setup::slack_bits
 #endif
@@ -70,12 +68,7 @@ struct ConductorState {
   enum class WeakSprings : std::uint8_t { kWeakest, kStiffer, kToppling };
   WeakSprings weak_springs_;
   bool is_second_;  ///< The unilateral law is asked as well, as they may.
-  double gamma_;    ///< (r, z) of conjugate gradients.
-  double alpha_;
-  double solve_error_;  ///< A solve ends when its residual's bound is below.
-  std::uint32_t solve_iterations_;
-  std::uint32_t solve_iterations_max_;
-  double error_;  ///< Bound on the error of load ratios at the last judgement.
+  double error_;    ///< Bound on the error of load ratios at the last judgement.
   double error_best_;
   double ratio_;
   double target_;
@@ -101,12 +94,11 @@ struct ConductorState {
   Deflation* deflation_;  ///< Lent; null: iterations are not deflated.
   bool is_spoiled_;       ///< The stiffness has changed while this solve went on.
   // Newton's method by the polynomial.
-  bool is_newton_;        ///< Contact states are kept until their forces are in balance.
-  bool has_left_newton_;  ///< It came to no end: never again.
-  bool stands_in_;        ///< The next iteration is one of a linear problem, ...
-  bool stood_in_;         ///< ... as the last one was.
-  bool is_solved_;        ///< The facets' own forces are in balance, as far as states need it.
-  double enough_;         ///< The linear problem is solved when its error is below.
+  bool is_newton_;  ///< Contact states are kept until their forces are in balance.
+  bool stands_in_;  ///< The next iteration is one of a linear problem, ...
+  bool stood_in_;   ///< ... as the last one was.
+  bool is_solved_;  ///< The facets' own forces are in balance, as far as states need it.
+  double enough_;   ///< The linear problem is solved when its error is below.
   // Further solutions.
   enum class Seeking : std::uint8_t { kNotYet, kTrying, kReturning, kDone };
   Seeking seeking_;
@@ -123,15 +115,6 @@ struct ConductorState {
   bool is_front_stale_;  ///< Facets are tried that the root does not keep yet.
   bool is_trial_lost_;   ///< A trial did not converge by the present method.
   bool was_newton_;      ///< is_newton_ before.
-  // Jacobi.
-  std::uint16_t batch_;
-  std::uint32_t check_at_;
-  double check_error_;
-  double least_error_;
-  // Line search.
-  double low_;
-  double high_;
-  std::uint8_t slope_count_;
   // The end.
   bool judges_faces_;  ///< There is memory to judge free faces, ...
   bool has_judged_;    ///< ... and those of the robot as it is have been.

@@ -39,7 +39,6 @@ struct MorePlanned {
   // Of the method in use: new whenever one begins. Iterations need theirs in one piece.
   List<std::array<float, 15>> stiffness_above{};
   std::array<IterationMemory, 1 + kPlannedMost> iterations{};
-  List<Gradients> gradients{};
   /// Where more than kPlannedMax are condensed here: factors, of the states they were made with.
   std::uint8_t group_count = 0;
   std::array<mechanics::ContactState, kPlannedMost> group_states{};
@@ -55,7 +54,6 @@ struct MorePlanned {
     group_count = 0;
     stiffness_above = {};
     iterations = {};
-    gradients = {};
   }
 };
 

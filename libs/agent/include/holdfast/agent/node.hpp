@@ -71,25 +71,6 @@ struct Node {
   base::Vec6<double> force{};  ///< Force of all beams on their module ends, at u.
 };
 
-/// One module's vectors in the Jacobi methods and conjugate gradients, named as in the method:
-/// r residual, g correction being found, z preconditioned residual, w its image, p and s
-/// directions.
-struct Gradients {
-  using Vec = base::Vec6<float>;
-
-  Vec r;
-  Vec r_start;   ///< At the start of the present solve, ...
-  Vec r_before;  ///< ... and of the one before.
-  Vec g;
-  Vec g_before;  ///< What the solve before found.
-  Vec move;      ///< The last change of u.
-  Vec z;
-  Vec w;
-  Vec image;  ///< What the beams make of what was exchanged.
-  Vec p;
-  Vec s;
-};
-
 /// A direction of minimal residuals: moving by p takes q from the residual, and z = M^-1 q.
 struct SearchDirection {
   base::Vec6<double> p;
@@ -117,9 +98,6 @@ void reset(Node& node);
 /// What acts on a node from outside but facets: its weight, or what its surroundings say.
 base::Vec6<double> load_of(const Node& node, const Setup& setup);
 
-/// The vectors of a node at rest: the residual is the load.
-Gradients gradients_at_rest(const Node& node, const Setup& setup);
-
 /// Three columns of the diagonal block into Node::matrix, the first or (half 1) the last ones: K11
 /// of the beams on `faces` and the facet's symmetric tangent.
 void form_diagonal(Node& node, const Setup& setup, const ContactSetting& contact, Faces faces,
@@ -132,26 +110,14 @@ void factor_diagonal(Node& node, int half);
 base::Vec6<double> diagonal_column(const Node& node, const Setup& setup,
                                    const ContactSetting& contact, Faces faces, int column);
 
-/// The scalar diagonal of that block (Eq. 14).
-base::Vec6<float> scalar_diagonal(const Node& node, const Setup& setup,
-                                  const ContactSetting& contact, Faces faces);
-
 /// Solves with the factor that factor_diagonal() has left.
 base::Vec6<float> solve_diagonal(const Node& node, base::Vec6<float> vector);
 
 /// Residual at u: load less beams less facets, in the states in use. Zero on a fixed module.
 base::Vec6<double> residual(const Node& node, const Setup& setup, const ContactSetting& contact);
 
-/// u + t g.
-base::Vec6<double> position_along(const Node& node, const base::Vec6<float>& g, double t);
-
-/// The force of the facets at u + t g, in the states that the law prescribes there.
-base::Vec6<double> facet_force_along(const Node& node, const ContactSetting& contact,
-                                     const base::Vec6<float>& g, double t);
-
-/// The state that the law prescribes at u + t g for the facet of a node without surroundings.
-mechanics::ContactState state_along(const Node& node, const ContactSetting& contact,
-                                    const base::Vec6<float>& g, double t);
+/// The state that the law prescribes for the facet of a node without surroundings.
+mechanics::ContactState prescribed_state(const Node& node, const ContactSetting& contact);
 
 /// How much a residual can change any load ratio: the force at the robot's full extent, and the
 /// torque, carried by one connection. Rigorous where the robot is statically determinate.

@@ -30,14 +30,11 @@ enum class Phase : std::uint8_t {
 };
 
 /// How many times an order makes all neighbours exchange vectors: `fixed` times, and if
-/// `is_counted` Order::count times more.
+/// `is_counted` Order::count times more, behind the report.
 struct Exchanges {
   std::uint8_t fixed = 0;
   bool is_counted = false;
-  bool is_behind = false;       ///< The counted ones go on behind the report.
-  std::uint8_t only_with = 0;   ///< None without this flag of the order.
-  std::uint8_t never_with = 0;  ///< None with any of these flags.
-  std::uint8_t twice_with = 0;  ///< With this flag twice as many counted ones, and 2 more.
+  std::uint8_t twice_with = 0;  ///< With this flag of the order twice as many, and 2 more.
 };
 
 /// One row of the table.
@@ -64,20 +61,7 @@ inline constexpr OperationInfo kOperations[] = {
     {wire::Operation::kAngles, "angles", 23, 19, Phase::kSimplified, {}, false, false,
      "safe angles"},
     {wire::Operation::kBegin, "begin", 13, 2, Phase::kEquilibrium,
-     {.is_counted = true, .is_behind = true}, false, false, "begin an equilibrium"},
-    {wire::Operation::kHigh, "high", 10, 2, Phase::kEquilibrium, {.fixed = 1}, true, false,
-     "move, exchange displacements"},
-    {wire::Operation::kLow, "low", 3, 17, Phase::kEquilibrium, {.fixed = 1}, true, false,
-     "residual, contact states"},
-    {wire::Operation::kStart, "start", 4, 12, Phase::kEquilibrium,
-     {.fixed = 1, .is_counted = true, .never_with = kWithScalars | kWithBlocks}, false, false,
-     "begin a linear solve"},
-    {wire::Operation::kGradient, "gradient", 11, 12, Phase::kEquilibrium,
-     {.fixed = 1, .is_counted = true}, false, true, "an iteration of conjugate gradients"},
-    {wire::Operation::kJacobi, "jacobi", 4, 6, Phase::kEquilibrium, {.is_counted = true}, false,
-     true, "iterations of Jacobi's method"},
-    {wire::Operation::kSlope, "slope", 11, 22, Phase::kEquilibrium,
-     {.fixed = 1, .only_with = kExchangeFirst}, false, false, "slope of the energy"},
+     {.is_counted = true}, false, false, "begin an equilibrium"},
     {wire::Operation::kHold, "hold", 3, 10, Phase::kEquilibrium, {}, false, false,
      "release and hold facets"},
     {wire::Operation::kCorners, "corners", 2, 21, Phase::kModel, {}, false, false,
@@ -89,19 +73,19 @@ inline constexpr OperationInfo kOperations[] = {
     {wire::Operation::kFactor, "factor", 2, 2, Phase::kEquilibrium, {}, false, false,
      "condense the branches"},
     {wire::Operation::kIterate, "iterate", 17, 41, Phase::kEquilibrium,
-     {.fixed = 2, .is_counted = true, .is_behind = true, .twice_with = kWithClusters}, true, true,
+     {.fixed = 2, .is_counted = true, .twice_with = kWithClusters}, true, true,
      "an iteration: move, residual, sums"},
     {wire::Operation::kTreeIterate, "tree iterate", 2, 17, Phase::kEquilibrium, {.fixed = 2}, false,
      true, "an iteration: move, residual"},
     {wire::Operation::kClusters, "clusters", 13, 10, Phase::kEquilibrium,
-     {.fixed = 1, .is_counted = true, .is_behind = true}, false, false,
+     {.fixed = 1, .is_counted = true}, false, false,
      "begin an equilibrium, find rigid clusters"},
     {wire::Operation::kForget, "forget", 12, 14, Phase::kMass, {}, false, false,
      "forget a plan that has ended"},
     {wire::Operation::kRenew, "renew", 12, 40, Phase::kMass, {}, false, false,
      "a change after the verdict"},
     {wire::Operation::kResume, "resume", 31, 20, Phase::kEquilibrium,
-     {.fixed = 2, .is_counted = true, .is_behind = true}, true, false,
+     {.fixed = 2, .is_counted = true}, true, false,
      "hosts, safe angles, an equilibrium from what is kept"},
     {wire::Operation::kClose, "close", 2, 35, Phase::kModel, {}, false, false,
      "support corners, the worst connection"},
@@ -117,42 +101,34 @@ inline constexpr OperationInfo kOperations[] = {
      "put a facet into another state"},
     {wire::Operation::kResumeDeflated, "resume deflated", 31,
      20 + 4 * (wire::kKeptMax + wire::kKeptPairs),
-     Phase::kEquilibrium, {.fixed = 2 + wire::kKeptMax, .is_counted = true, .is_behind = true},
+     Phase::kEquilibrium, {.fixed = 2 + wire::kKeptMax, .is_counted = true},
      true, false, "the same, and energies of what is kept"},
     {wire::Operation::kIterateDeflated, "iterate deflated", 17 + 4 * wire::kKeptMax,
      41 + 4 * wire::kKeptMax, Phase::kEquilibrium,
-     {.fixed = 2, .is_counted = true, .is_behind = true}, true, true,
+     {.fixed = 2, .is_counted = true}, true, true,
      "an iteration, and along what is kept"},
     {wire::Operation::kIterateLast, "iterate last", 17 + 4 * wire::kKeptMax,
      70 + 4 * wire::kKeptMax, Phase::kEquilibrium,
-     {.fixed = 2, .is_counted = true, .is_behind = true}, true, true,
+     {.fixed = 2, .is_counted = true}, true, true,
      "an iteration, corners, the worst connection"},
 };
+
 // clang-format on
 
-static_assert(sizeof(kOperations) / sizeof(kOperations[0]) == wire::kOperationCount);
-static_assert(
-    [] {
-      std::size_t next = 1;
-      for (const OperationInfo& info : kOperations) {
-        if (static_cast<std::size_t>(info.operation) != next++) {
-          return false;
-        }
-      }
-      return true;
-    }(),
-    "a row is missing, or not in its place");
-
-/// The row of an operation.
+/// The row of an operation, which is one.
 constexpr const OperationInfo& info(wire::Operation operation) {
-  return kOperations[static_cast<std::size_t>(operation) - 1];
+  const OperationInfo* row = kOperations;
+  while (row->operation != operation) {
+    ++row;
+  }
+  return *row;
 }
 
-/// One column of the table, by operation; at 0, which is none, zero. A program that looks up
+/// One column of the table, by operation; at numbers that are none, zero. A program that looks up
 /// columns only has no names in it.
 template <class Value>
-constexpr std::array<Value, wire::kOperationCount + 1> column(Value OperationInfo::*member) {
-  std::array<Value, wire::kOperationCount + 1> values{};
+constexpr std::array<Value, wire::kOperationLast + 1> column(Value OperationInfo::*member) {
+  std::array<Value, wire::kOperationLast + 1> values{};
   for (const OperationInfo& row : kOperations) {
     values[static_cast<std::size_t>(row.operation)] = row.*member;
   }
@@ -170,26 +146,18 @@ inline constexpr auto kIsPrecise = column(&OperationInfo::is_precise);
 /// that of the clusters' part.
 constexpr std::uint16_t exchanges_behind(const Order& order) {
   const Exchanges& exchanges = columns::kExchanges[static_cast<std::size_t>(order.operation)];
-  if (!exchanges.is_behind) {
+  if (!exchanges.is_counted) {
     return 0;
   }
   const bool is_twice = (order.flags & exchanges.twice_with) != 0;
   return static_cast<std::uint16_t>(is_twice ? 2 * order.count + 2 : order.count);
 }
 
-/// How many times an order makes all neighbours exchange vectors. A preconditioner of degree m
-/// shares m more vectors than its first and its last one, which are the same for m = 0. An
-/// iteration shares its move in two parts and then the terms of its polynomial.
+/// How many times an order makes all neighbours exchange vectors. An iteration shares its move in
+/// two parts and then the terms of its polynomial.
 constexpr std::uint16_t exchange_count(const Order& order) {
   const Exchanges& exchanges = columns::kExchanges[static_cast<std::size_t>(order.operation)];
-  if ((order.flags & exchanges.only_with) != exchanges.only_with ||
-      (order.flags & exchanges.never_with) != 0) {
-    return 0;
-  }
-  const std::uint16_t counted = exchanges.is_behind    ? exchanges_behind(order)
-                                : exchanges.is_counted ? order.count
-                                                       : std::uint16_t{0};
-  return static_cast<std::uint16_t>(exchanges.fixed + counted);
+  return static_cast<std::uint16_t>(exchanges.fixed + exchanges_behind(order));
 }
 
 /// Do digits of forces beyond single precision count?

@@ -87,10 +87,8 @@ constexpr bool is_reasoned(const Answer& answer) {
 /// In kPlan: no planned module is learned yet.
 inline constexpr std::uint8_t kNoPlanned = 0xff;
 
-/// Exchanges that one order may ask for: the degree of a polynomial, and iterations of a Jacobi
-/// method.
+/// Exchanges that one order may ask for: the degree of a polynomial.
 inline constexpr std::uint16_t kDegreeMax = 4000;
-inline constexpr std::uint16_t kJacobiCountMax = 4096;
 
 /// What the root asks for. Operations share the fields; what the reals are has a name for each
 /// operation. See docs/wire.md.
@@ -100,7 +98,7 @@ struct Order {
   /// the word learned, or kNoWord. kStage: the stage that is judged next, or 0.
   std::uint8_t index = 0;
   std::uint8_t flags = 0;
-  /// kJacobi: iterations; kStart, kGradient, kBegin, kIterate: degree; kWord: words; kStage: scene.
+  /// kBegin, kIterate: degree; kWord: words; kStage: scene.
   std::uint16_t count = 0;
   PlannedMasks masks{};   ///< kHosts, kResume
   base::Cell cell = {};   ///< kPlan, kForget, kRenew, kWord: of that module; kMass: of the root.
@@ -117,21 +115,6 @@ struct Order {
   constexpr float gamma() const { return reals[0]; }  ///< Share of weak springs in open facets.
 
   constexpr float lever_mm() const { return reals[1]; }  ///< The robot's extent.
-
-  // kHigh: along the correction, less `mix` of the last move and the change of directions
-  constexpr float length() const { return reals[0]; }
-
-  constexpr float mix() const { return reals[1]; }
-
-  // kGradient
-  constexpr float alpha() const { return reals[0]; }
-
-  constexpr float beta() const { return reals[1]; }
-
-  // kSlope: the slope is asked for at four places in (low, high].
-  constexpr float low() const { return reals[0]; }
-
-  constexpr float high() const { return reals[1]; }
 
   // kIterate: u := u + a (p - c p_older) + b p_older
   constexpr float c() const { return reals[0]; }
@@ -167,10 +150,9 @@ inline constexpr std::uint8_t kKeepsMotion = 8;  ///< kResume: displacements, co
 inline constexpr std::uint8_t kRests = 16;       ///< kResume: safe angles are asked for.
 inline constexpr std::uint8_t kKeepsFactors = 64;   ///< kRenew, kResume: those of elimination.
 inline constexpr std::uint8_t kUnilateralLaw = 1;   ///< kBegin
-inline constexpr std::uint8_t kOneSweep = 2;        ///< kBegin: for kIterate or kTreeIterate.
+inline constexpr std::uint8_t kOneSweep = 2;        ///< kBegin: always.
 inline constexpr std::uint8_t kWithIterations = 4;  ///< kBegin: for kIterate.
 inline constexpr std::uint8_t kWithFronts = 8;      ///< kBegin: elimination with fronts.
-inline constexpr std::uint8_t kFollowStates = 1;    ///< kLow: take over wanted states.
 inline constexpr std::uint8_t kRestart = 1;         ///< kIterate: without older directions.
 inline constexpr std::uint8_t kLeastResidual = 2;   ///< kIterate: least residual, not least energy.
 inline constexpr std::uint8_t kKeepStates = 4;      ///< kIterate: contact states are not looked up.
@@ -179,18 +161,13 @@ inline constexpr std::uint8_t kWithClusters = 8;    ///< kIterate: clusters betw
 inline constexpr std::uint8_t kHoldPlanned = 16;
 /// kIterate: facets act by the symmetric stand-ins of their tangents.
 inline constexpr std::uint8_t kStandIn = 32;
-inline constexpr std::uint8_t kAdoptStates = 1;    ///< kStart
-inline constexpr std::uint8_t kWithScalars = 2;    ///< kStart
-inline constexpr std::uint8_t kWithBlocks = 4;     ///< kStart
-inline constexpr std::uint8_t kExchangeFirst = 1;  ///< kSlope
-inline constexpr std::uint8_t kMixProducts = 2;    ///< kSlope: how to mix the last two iterates.
-inline constexpr std::uint8_t kReleaseOpen = 1;    ///< kHold
-inline constexpr std::uint8_t kFreeOpen = 2;       ///< kHold: of all open facets, for comparison.
-inline constexpr std::uint8_t kIsHeld = 1;         ///< kNext: a module is fixed, nothing topples.
-inline constexpr std::uint8_t kHasForces = 2;      ///< kNext: there is an equilibrium, ...
-inline constexpr std::uint8_t kIsUnilateral = 4;   ///< ... by the unilateral law.
-inline constexpr std::uint8_t kRemember = 1;       ///< kSeek: states in use are those found.
-inline constexpr std::uint8_t kOneFoot = 2;        ///< kSeek: one facet presses alone.
+inline constexpr std::uint8_t kReleaseOpen = 1;   ///< kHold
+inline constexpr std::uint8_t kFreeOpen = 2;      ///< kHold: of all open facets, for comparison.
+inline constexpr std::uint8_t kIsHeld = 1;        ///< kNext: a module is fixed, nothing topples.
+inline constexpr std::uint8_t kHasForces = 2;     ///< kNext: there is an equilibrium, ...
+inline constexpr std::uint8_t kIsUnilateral = 4;  ///< ... by the unilateral law.
+inline constexpr std::uint8_t kRemember = 1;      ///< kSeek: states in use are those found.
+inline constexpr std::uint8_t kOneFoot = 2;       ///< kSeek: one facet presses alone.
 /// kSeek: facets of lesser keys are open, those of greater ones stay as they are.
 inline constexpr std::uint8_t kEachState = kRemember | kOneFoot;
 inline constexpr std::uint32_t kStateBits = 15;  ///< Of its key.
@@ -237,7 +214,7 @@ struct Report {
   std::array<float, wire::kKeptPairs> energies{};  ///< kResumeDeflated: w_i' K w_j
 #endif
 
-  // kLow, kIterate, kTreeIterate; kJacobi has the first one only.
+  // kIterate, kTreeIterate
   constexpr float error() const { return reals[0]; }  ///< Bound on the error of load ratios.
 
   constexpr float load_ratio_max() const { return reals[1]; }  ///< The largest of all connections.
@@ -245,20 +222,6 @@ struct Report {
   constexpr std::uint16_t changed_count() const { return extent; }  ///< How many facets.
 
   constexpr std::uint32_t states_hash() const { return number; }  ///< Hash of all contact states.
-
-  // kStart, kGradient
-  constexpr float residual_product() const { return reals[0]; }  ///< (r, z)
-
-  constexpr float image_product() const { return reals[1]; }  ///< (z, w)
-
-  constexpr float solve_error() const { return reals[2]; }  ///< Bound on the error left.
-
-  // kSlope; with kMixProducts (dg, r) and (dg, dr).
-  constexpr float slope(std::size_t place) const { return reals[place]; }
-
-  constexpr float mix_product() const { return reals[0]; }
-
-  constexpr float mix_square() const { return reals[1]; }
 
   // kMass, kRenew
   constexpr std::uint32_t mass() const { return number; }  ///< Units, of all modules.
@@ -318,13 +281,13 @@ inline constexpr std::uint8_t kDisputed = 16;         ///< kPlan
 inline constexpr std::uint8_t kMoreAnnounced = 8;     ///< kRenew: cell is planned, too.
 inline constexpr std::uint8_t kAtOdds = 16;           ///< kRenew: only a new round can settle it.
 inline constexpr std::uint8_t kNewLoop = 32;          ///< kRenew: factors cannot be kept.
-inline constexpr std::uint8_t kAnyTilting = 1;        ///< kLow
+inline constexpr std::uint8_t kAnyTilting = 1;        ///< kIterate, kTreeIterate
 inline constexpr std::uint8_t kNoRoom = 2;            ///< kTreeIterate: a front found no room.
 inline constexpr std::uint8_t kNoState = 4;  ///< kTreeIterate: the root found no contact state.
-/// kLow, kIterate, kTreeIterate: away from a level floor a facet is open or tilts, so its weak
+/// kIterate, kTreeIterate: away from a level floor a facet is open or tilts, so its weak
 /// spring may carry.
 inline constexpr std::uint8_t kMayPull = 8;
-/// kLow, kIterate, kTreeIterate: a facet may have a second state (is_doubtful()).
+/// kIterate, kTreeIterate: a facet may have a second state (is_doubtful()).
 inline constexpr std::uint8_t kMayDiffer = 16;
 inline constexpr std::uint8_t kStepTold = 32;  ///< kPlan: a step was told.
 inline constexpr std::uint8_t kDenied = 2;     ///< kWord: a word does not fit this module.

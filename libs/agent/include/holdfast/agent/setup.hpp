@@ -14,9 +14,6 @@ namespace holdfast::agent {
 
 /// How the root finds the equilibrium. A method that diverges or stagnates gives way to the next.
 enum class Method : std::uint8_t {
-  kJacobi,              ///< Weighted Jacobi with the scalar diagonal, Eq. (14).
-  kBlockJacobi,         ///< Jacobi's method with 6x6 diagonal blocks.
-  kConjugateGradients,  ///< Preconditioned with the 6x6 diagonal blocks.
   kPolynomial,   ///< One sweep an iteration, with a polynomial of 1.5 times the tree's depth.
   kElimination,  ///< One sweep an iteration, exactly over the tree; for robots with few loops.
   kFronts,       ///< kElimination, and for many loops and other laws fronts in memory that is lent;
@@ -37,18 +34,13 @@ struct Setup {
   std::int32_t support_z = 0;  ///< Modules in this layer rest on the ground.
   /// kElimination means: or kPolynomial, if the robot has too many loops.
   Method method = Method::kElimination;
-  /// Elimination and the polynomial alone, without rigid clusters and without conjugate gradients
-  /// where they do not settle: for robots some of whose modules have no other method
-  /// (src/methods.hpp).
+  /// Elimination and the polynomial alone, without rigid clusters and without further solutions:
+  /// for robots some of whose modules have no other method (src/methods.hpp).
   bool only_one_sweep = false;
   /// After a verdict the next one begins from what is kept, where only a plan has changed or a
   /// module has come; else, and without it, from nothing.
   bool keeps_answers = false;
   std::uint32_t iteration_count_max = 4'000'000;
-  /// Degree of the polynomial preconditioner of conjugate gradients. A degree m costs m rounds more
-  /// and saves about a factor m of sweeps of twice the tree's depth, so the depth is a good degree.
-  /// This bounds it, as single precision spoils very high ones; 0 leaves the diagonal blocks alone.
-  std::uint8_t degree_max = 200;
   LinkTiming timing;
 
   // Derived by prepare().

@@ -7,7 +7,6 @@
 
 #include "holdfast/agent/announcements.hpp"
 #include "holdfast/agent/front_elimination.hpp"
-#include "holdfast/agent/krylov_and_jacobi.hpp"
 #include "holdfast/agent/order.hpp"
 #include "holdfast/agent/polynomial_iteration.hpp"
 #include "holdfast/agent/rigid_clusters.hpp"
@@ -27,7 +26,6 @@ union MethodState {
   PolynomialIteration polynomial;
   RigidClusters clusters;
   FrontElimination fronts;
-  KrylovAndJacobi gradients;
 };
 
 /// Where the root is in its work, as far as its orders tell. From kElimination on there is an
@@ -42,7 +40,6 @@ enum class Course : std::uint8_t {
   kPolynomial,
   kClusters,
   kFronts,
-  kGradients,
   kAnswered,
 };
 

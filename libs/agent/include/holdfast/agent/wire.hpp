@@ -88,20 +88,14 @@ enum class MessageType : std::uint8_t {
 };
 
 /// What an order asks for. Each has a body for the way down and one for the way up; operations.hpp
-/// has all that is known of them.
+/// has all that is known of them. Numbers 6 to 11 belonged to methods that exist no longer.
 enum class Operation : std::uint8_t {
   kPlan = 1,         ///< Learn one planned cell, find the next.
   kHosts,            ///< Which faces of planned modules touch; who emulates them.
   kMass,             ///< Count, centre of mass, supports, extent.
   kAngles,           ///< Safe angles of the simplified stability check.
   kBegin,            ///< Start an equilibrium: law, weak spring.
-  kHigh,             ///< Move along the correction, exchange the leading part of the displacements.
-  kLow,              ///< Exchange the rest; residual, contact states, loads.
-  kStart,            ///< Start a linear solve for a correction.
-  kGradient,         ///< One iteration of conjugate gradients.
-  kJacobi,           ///< Some iterations of a Jacobi method, in lockstep.
-  kSlope,            ///< Slope of the energy along the correction.
-  kHold,             ///< Release open facets, hold pressed ones.
+  kHold = 12,        ///< Release open facets, hold pressed ones.
   kCorners,          ///< Support corners of the model-based stability check.
   kLoads,            ///< The worst connection.
   kVerdict,          ///< The answer, for every module.
@@ -122,7 +116,7 @@ enum class Operation : std::uint8_t {
   kIterateDeflated,  ///< kIterate, and along those changes.
   kIterateLast,      ///< kIterateDeflated and kClose in one: probably the last one.
 };
-inline constexpr int kOperationCount = static_cast<int>(Operation::kIterateLast);
+inline constexpr int kOperationLast = static_cast<int>(Operation::kIterateLast);
 
 /// Sizes of whole messages, type byte included; 0 for what is not a message. `second` is the byte
 /// after the type and matters for orders and reports only.
@@ -146,7 +140,6 @@ class Writer {
 
   void i32(std::int32_t value) { u32(static_cast<std::uint32_t>(value)); }
 
-  void short_real(double value);      ///< Its upper 16 bits, rounded away from zero.
   void real(double value);            ///< Rounded to binary32.
   void long_real(double value);       ///< As binary32, and what that leaves as another.
   void cell(const base::Cell& cell);  ///< Three times 24 bits, two's complement.
@@ -171,7 +164,6 @@ class Reader {
 
   std::int32_t i32() { return static_cast<std::int32_t>(u32()); }
 
-  float short_real();
   float real();
   double long_real();
   base::Cell cell();

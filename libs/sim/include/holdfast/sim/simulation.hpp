@@ -34,11 +34,10 @@ struct SimulationOptions {
   /// from which a robot goes on at its next change, and fronts elsewhere. A robot that is not of
   /// cubes on a floor is lent memory anyway, and then that for fronts, too.
   std::optional<agent::Method> method = {};
-  std::uint8_t degree_max = 200;  ///< See agent::Setup.
-  bool only_one_sweep = false;    ///< See agent::Setup: modules with little flash.
-  bool keeps_answers = true;      ///< See agent::Setup. False: every change starts from nothing.
-  bool deflates = false;      ///< Modules have the memory to keep how they moved (deflation.hpp).
-  bool judges_faces = false;  ///< Modules have the memory to judge free faces (free_faces.hpp).
+  bool only_one_sweep = false;  ///< See agent::Setup: modules with little flash.
+  bool keeps_answers = true;    ///< See agent::Setup. False: every change starts from nothing.
+  bool deflates = false;        ///< Modules have the memory to keep how they moved (deflation.hpp).
+  bool judges_faces = false;    ///< Modules have the memory to judge free faces (free_faces.hpp).
   /// Modules have the memory for 30 planned ones, not 5 (more_planned.hpp). They have it anyway
   /// where the robot, the step and `announcements` have more than 5 together.
   bool plans_many = false;
