@@ -13,15 +13,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "bounds/energy_bound.hpp"
-#include "bounds/robot_growth.hpp"
 #include "equilibria/carried_force.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/mechanics/ground_contact.hpp"
 #include "holdfast/model/families.hpp"
 #include "holdfast/model/material.hpp"
+#include "holdfast/plan/order_search.hpp"
 #include "nearest_first.hpp"
+#include "part_of.hpp"
 
 namespace holdfast::plan {
 namespace {
@@ -193,8 +195,7 @@ TEST(Adjoint, knows_a_facets_force_but_for_the_product_of_two_errors) {
     Displacements u = exact_displacements(spec, state, check(spec, state));
     shrink(u);
     const Displacements still = u;
-    WatchedFacets watched(target);
-    watched.take(adjoints);
+    WatchedFacets watched(target, adjoints);
     watched.begin(state.elements(), u);
     LocalBalance local(target);
     local.assign(state.elements());
@@ -230,8 +231,7 @@ TEST(Adjoint, answers_in_states_on_the_way_that_it_has_grown_and_no_others) {
   std::ranges::for_each(std::span(order).first(260),
                         [&](Element element) { core.insert(element); });
   const Adjoints adjoints = grown_adjoints(spec, target, core, {0}, run);
-  WatchedFacets watched(target);
-  watched.take(adjoints);
+  WatchedFacets watched(target, adjoints);
   const Displacements u(order.size());
   ElementSet state = core;
   for (std::size_t i = 0; i < 10; ++i) {
@@ -343,21 +343,17 @@ int certified_count(const Case& robot, bool has_adjoints) {
   const model::RobotSpec spec = spec_of(robot);
   const model::Robot target = model::Robot::create(spec).value();
   const LocalAdjoints nearby(target);
-  EnergyBound bound(target, nearby);
   const std::vector<Element> order = test::nearest_first(target);
   ElementSet state(order.size());
   const std::size_t core_count = order.size() - robot.grown;
   for (std::size_t i = 0; i < core_count; ++i) {
     state.insert(order[i]);
   }
-  if (has_adjoints) {
-    std::vector<std::size_t> facets(target.facets().size());
-    for (std::size_t i = 0; i < facets.size(); ++i) {
-      facets[i] = i;
-    }
-    bound.take_adjoints(
-        grown_adjoints(spec, target, state, facets, std::span(order).subspan(core_count)));
-  }
+  std::vector<std::size_t> facets(has_adjoints ? target.facets().size() : 0);
+  std::iota(facets.begin(), facets.end(), std::size_t{0});
+  EnergyBound bound(
+      target, nearby,
+      grown_adjoints(spec, target, state, facets, std::span(order).subspan(core_count)));
   EXPECT_TRUE(bound.begin(state.elements(), check(spec, state))) << robot.family;
   for (std::size_t i = core_count; i < order.size(); ++i) {
     const auto ratio = bound.add(order[i]);

@@ -11,11 +11,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <string>
 #include <utility>
 
 #include "equilibria/core_response.hpp"
-#include "equilibria/influence_core.hpp"
+#include "equilibria/solved_core.hpp"
 #include "general_robot.hpp"
 #include "holdfast/base/rng.hpp"
 #include "seeds.hpp"
@@ -48,34 +49,6 @@ std::vector<Vec6<double>> solved(solver::LinearSystem& system) {
   return system.displacement();
 }
 
-/// Answers by the equations, each time anew.
-class CoreBySystem final : public SolvedCore {
- public:
-  CoreBySystem(const model::Robot& robot, const std::vector<ContactState>& states)
-      : system_(system_of(robot, states)), own_(solved(*system_)) {}
-
-  std::span<const solver::FacetState> facets() const override { return system_->facets(); }
-
-  const solver::FacetLaw<double>& law() const override { return system_->law(); }
-
-  const model::LatticeBeam<double>& beam() const override { return system_->beam(); }
-
-  const Vec& displacement(std::size_t module) const override { return own_[module]; }
-
-  bool knows(std::span<const std::size_t> /*modules*/) const override { return true; }
-
-  Vec answer(std::size_t module, const PointLoad& load) const override {
-    std::vector<Vec> loads(own_.size());
-    loads[load.module] = load.load;
-    system_->set_loads(model::Loads(loads));
-    return solved(*system_)[module];
-  }
-
- private:
-  std::unique_ptr<solver::LinearSystem> system_;
-  std::vector<Vec> own_;
-};
-
 /// Displacements and turns are compared with the largest of their own.
 void expect_near(const std::vector<Vec6<double>>& a, const std::vector<Vec6<double>>& b,
                  const std::string& what) {
@@ -93,6 +66,15 @@ void expect_near(const std::vector<Vec6<double>>& a, const std::vector<Vec6<doub
   }
 }
 
+/// Bytes.
+constexpr std::size_t kEnough = std::size_t{1} << 29U;
+
+std::vector<std::size_t> all_modules(const model::Robot& robot) {
+  std::vector<std::size_t> modules(robot.modules().size());
+  std::iota(modules.begin(), modules.end(), std::size_t{0});
+  return modules;
+}
+
 /// A robot, and the same with up to four modules more and another load.
 struct Pair {
   model::Robot core;
@@ -103,6 +85,7 @@ struct Pair {
 std::optional<Pair> pair_of(const base::Lattice& lattice, std::uint64_t seed) {
   model::RobotSpec spec = test::held_robot(lattice, seed, test::Fixed::kFirst);
   const std::vector<Cell> planned = std::exchange(spec.planned, {});
+  spec.material.contact_gamma = kGamma;
   auto core = model::Robot::create(spec, 1);
   const std::size_t more = std::min(planned.size(), seed % (kNewMax + 1));
   spec.existing.insert(spec.existing.end(), planned.begin(),
@@ -140,10 +123,6 @@ class Growth {
     add_loads();
     add_beams();
     add_facets(states);
-    change_.links = links_;
-    change_.new_modules = [this](std::span<const solver::FacetState> own) {
-      return std::make_shared<const NewModules>(core_, links_, beams_, loads_, own);
-    };
   }
 
   const Change& change() const { return change_; }
@@ -153,7 +132,7 @@ class Growth {
   /// By facet of the grown robot: where its state is.
   std::size_t index_of(std::size_t facet) const { return index_of_[facet]; }
 
-  bool has_new() const { return !loads_.empty(); }
+  bool has_new() const { return !change_.new_loads.empty(); }
 
   /// By module of the grown robot.
   std::vector<Vec6<double>> displacements(const Changed& changed) const {
@@ -165,10 +144,10 @@ class Growth {
       return u;
     };
     std::vector<Vec6<double>> hosts;
-    for (const Link& link : links_) {
+    for (const Link& link : change_.links) {
       hosts.push_back(of_core(link.host));
     }
-    const auto moved = changed.new_modules->displacements(hosts);
+    const auto moved = changed.new_modules.displacements(hosts);
     std::vector<Vec6<double>> all;
     for (const std::size_t place : pair_.place) {
       all.push_back(place < core_count_ ? of_core(place) : moved[place - core_count_]);
@@ -178,12 +157,12 @@ class Growth {
 
  private:
   void add_loads() {
-    loads_.resize(pair_.grown.modules().size() - core_count_);
+    change_.new_loads.resize(pair_.grown.modules().size() - core_count_);
     for (std::size_t i = 0; i < pair_.place.size(); ++i) {
       Vec6<double> load = pair_.grown.loads()[i];
       const std::size_t place = pair_.place[i];
       if (place >= core_count_) {
-        loads_[place - core_count_] = load;
+        change_.new_loads[place - core_count_] = load;
       } else {
         base::add_times(load, -1, pair_.core.loads()[place]);
         change_.loads.push_back({.module = place, .load = load});
@@ -196,13 +175,13 @@ class Growth {
       const std::size_t a = pair_.place[at(joint.a)];
       const std::size_t b = pair_.place[at(joint.b)];
       if (a >= core_count_ && b >= core_count_) {
-        beams_.push_back({.a = static_cast<std::int32_t>(a - core_count_),
-                          .b = static_cast<std::int32_t>(b - core_count_),
-                          .direction = joint.direction});
+        change_.beams.push_back({.a = static_cast<std::int32_t>(a - core_count_),
+                                 .b = static_cast<std::int32_t>(b - core_count_),
+                                 .direction = joint.direction});
       } else if (b >= core_count_) {
-        links_.push_back({.host = a, .direction = joint.direction, .to = b - core_count_});
+        change_.links.push_back({.host = a, .direction = joint.direction, .to = b - core_count_});
       } else if (a >= core_count_) {
-        links_.push_back(
+        change_.links.push_back(
             {.host = b, .direction = base::opposite(joint.direction), .to = a - core_count_});
       }
     }
@@ -233,9 +212,6 @@ class Growth {
   const Pair& pair_;
   const SolvedCore& core_;
   std::size_t core_count_;
-  std::vector<Link> links_;
-  std::vector<model::Connection> beams_;
-  std::vector<Vec6<double>> loads_;  ///< By new module.
   std::vector<std::size_t> index_of_;
   ContactStates states_;
   Change change_;
@@ -249,8 +225,13 @@ TEST(ChangedRobot, moves_as_one_that_is_solved_from_nothing) {
     if (!pair) {
       continue;
     }
+    const auto influence = solver::Influence::make(pair->core, kDirect);
+    if (!influence) {
+      continue;
+    }
     base::Rng rng(seed);
-    const CoreBySystem core(pair->core, random_states(pair->core, rng));
+    SolvedCore core(*influence);
+    ASSERT_TRUE(core.find_columns(all_modules(pair->core), kEnough));
     const auto states = random_states(pair->grown, rng);
     const auto system = system_of(pair->grown, states);
     const std::vector<Vec6<double>> expected = solved(*system);
@@ -274,7 +255,8 @@ TEST(ChangedRobot, moves_as_one_that_is_solved_from_nothing) {
 TEST(ChangedRobot, has_new_modules_on_one_link_for_a_load) {
   const auto robot =
       model::Robot::create({.existing = {{0, 0, 0}}, .fixed = {{0, 0, 0}}}, 1).value();
-  const CoreBySystem core(robot, {});
+  const auto influence = solver::Influence::make(robot, kDirect);
+  const SolvedCore core(*influence);
   const std::vector<Link> links = {{.host = 0, .direction = base::Direction::kPlusX}};
   const std::vector<model::Connection> beams = {
       {.a = 0, .b = 1, .direction = base::Direction::kPlusX},
@@ -292,7 +274,7 @@ TEST(ChangedRobot, has_new_modules_on_one_link_for_a_load) {
   }
 }
 
-TEST(InfluenceCore, answers_as_the_equations_do) {
+TEST(SolvedCore, answers_as_the_equations_do) {
   std::size_t answer_count = 0;
   for (std::uint64_t seed = 0; seed < test::campaign(12U); ++seed) {
     const auto robot = model::Robot::create(
@@ -301,9 +283,13 @@ TEST(InfluenceCore, answers_as_the_equations_do) {
     if (!influence) {
       continue;
     }
-    InfluenceCore core(*influence);
-    EXPECT_FALSE(InfluenceCore(*influence).find_columns(1));
-    ASSERT_TRUE(core.find_columns(std::size_t{1} << 29U));
+    SolvedCore core(*influence);
+    std::vector<std::size_t> modules;
+    for (const solver::FacetState& facet : core.facets()) {
+      modules.push_back(facet.module);
+    }
+    EXPECT_EQ(core.find_columns(modules, 1), modules.empty());
+    ASSERT_TRUE(core.find_columns(modules, kEnough));
     const auto system = solver::make_linear_system(robot.value(), kDirect);
     system->set_law({.law = mechanics::ContactLaw::kRegularised,
                      .gamma = robot.value().material().contact_gamma});

@@ -11,12 +11,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bounds/robot_growth.hpp"
+#include "bounds/following_worth.hpp"
 #include "equilibria/carried_force.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/model/families.hpp"
 #include "holdfast/model/material.hpp"
 #include "nearest_first.hpp"
+#include "part_of.hpp"
 
 namespace holdfast::plan {
 namespace {
@@ -68,11 +69,10 @@ TEST(FollowedRobot, is_where_a_check_finds_it_within_its_error) {
     for (std::size_t i = 0; i < core_count; ++i) {
       state.insert(order[i]);
     }
-    FollowedRobot followed(spec, target);
     const verdict::Assessment core =
         verdict::assess(model::Robot::create(part_of(spec, state)).value(), exact);
     ASSERT_EQ(core.verdict, verdict::Verdict::kSafe) << family;
-    followed.begin(state, core);
+    FollowedRobot followed(spec, target, state, core);
     for (std::size_t i = core_count; i < order.size(); ++i) {
       state.insert(order[i]);
       followed.add(order[i]);

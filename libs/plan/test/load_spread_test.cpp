@@ -13,12 +13,12 @@
 #include <cmath>
 
 #include "bounds/energy_bound.hpp"
-#include "bounds/robot_growth.hpp"
 #include "equilibria/carried_force.hpp"
 #include "family_spec.hpp"
 #include "holdfast/model/families.hpp"
 #include "holdfast/model/material.hpp"
 #include "nearest_first.hpp"
+#include "part_of.hpp"
 #include "seeds.hpp"
 
 namespace holdfast::plan {

@@ -14,10 +14,10 @@
 #include <cmath>
 
 #include "bounds/energy_bound.hpp"
-#include "bounds/robot_growth.hpp"
 #include "equilibria/carried_force.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/model/material.hpp"
+#include "part_of.hpp"
 #include "seeds.hpp"
 
 namespace holdfast::plan {
@@ -156,7 +156,6 @@ Count grow(const Slender& robot, double strength) {
   const model::Robot target = model::Robot::create(spec).value();
   const LocalAdjoints adjoints(target);
   EnergyBound bound(target, adjoints);
-  SectionResponse section(spec, target);
   ElementSet state(spec.existing.size());
   const std::size_t core_count = spec.existing.size() - robot.grown.size();
   for (std::size_t i = 0; i < core_count; ++i) {
@@ -165,9 +164,10 @@ Count grow(const Slender& robot, double strength) {
   const auto check = [&] {
     return verdict::assess(model::Robot::create(part_of(spec, state)).value(), options);
   };
-  EXPECT_TRUE(section.find(state) && section.solve()) << robot.name;
+  const auto section = SectionResponse::make(spec, target, state, find_section(target, state));
+  EXPECT_TRUE(section) << robot.name;
   const verdict::Assessment core = check();
-  EXPECT_TRUE(bound.begin(state.elements(), core, &section)) << robot.name;
+  EXPECT_TRUE(bound.begin(state.elements(), core, &*section)) << robot.name;
   Count count;
   bool is_certified = true;
   for (std::size_t i = core_count; i < spec.existing.size(); ++i) {
@@ -184,7 +184,7 @@ Count grow(const Slender& robot, double strength) {
       EXPECT_LE(whole.load_ratio_max.value_or(0), *ratio) << robot.name << i;
       EXPECT_TRUE(is_stuck) << robot.name << i;
       const double error = std::sqrt(energy_between(
-          target, displacements(target, bound, section, core.equilibrium.displacement, i + 1),
+          target, displacements(target, bound, *section, core.equilibrium.displacement, i + 1),
           whole.equilibrium.displacement));
       EXPECT_LE(error, bound.energy_error()) << robot.name << i;
       ++count.certified;
@@ -213,17 +213,17 @@ TEST(SectionResponse, hands_its_modules_parts_that_add_up_to_the_resultant) {
   for (const Slender& robot : slender_robots()) {
     const model::RobotSpec spec = spec_of(robot, 1);
     const model::Robot target = model::Robot::create(spec).value();
-    SectionResponse section(spec, target);
     ElementSet state(spec.existing.size());
     for (std::size_t i = 0; i < spec.existing.size() - robot.grown.size(); ++i) {
       state.insert(static_cast<Element>(i));
     }
-    ASSERT_TRUE(section.find(state) && section.solve()) << robot.name;
+    const auto section = SectionResponse::make(spec, target, state, find_section(target, state));
+    ASSERT_TRUE(section) << robot.name;
     const base::Vec6<double> load = {0, 0, -7, 110, -50, 0};
-    const auto resultant = section.resultant(load);
+    const auto resultant = section->resultant(load);
     base::Vec6<double> sum{};
-    for (std::size_t i = 0; i < section.modules().size(); ++i) {
-      base::add_to(sum, section.share(i, resultant));
+    for (std::size_t i = 0; i < section->modules().size(); ++i) {
+      base::add_to(sum, section->share(i, resultant));
     }
     for (std::size_t k = 0; k < 6; ++k) {
       EXPECT_NEAR(sum[k], load[k], 1e-10) << robot.name << k;  // Rounding.

@@ -7,14 +7,12 @@
 #include <numeric>
 
 #include "block_product.hpp"
-#include "bounds/robot_growth.hpp"
 #include "equilibria/carried_force.hpp"
+#include "equilibria/stuck_core.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/host/team.hpp"
 #include "holdfast/mechanics/ground_contact.hpp"
 #include "holdfast/model/material.hpp"
-#include "holdfast/solver/linear_system.hpp"
-#include "holdfast/verdict/assessment.hpp"
 
 namespace holdfast::plan {
 namespace {
@@ -48,32 +46,29 @@ ThreeVectors products(std::span<const Element> modules, const std::vector<ThreeV
 }
 
 /// None if it cannot be solved.
-std::shared_ptr<Adjoint> find_adjoint(solver::LinearSystem& system, const model::Robot& target,
-                                      std::shared_ptr<const std::vector<Element>> core,
+std::shared_ptr<Adjoint> find_adjoint(StuckCore& core, const model::Robot& target,
+                                      std::shared_ptr<const std::vector<Element>> elements,
                                       std::size_t facet) {
-  Adjoint::Core adjoint;
-  adjoint.facet = facet;
-  const std::vector<Element>& elements = *core;
-  adjoint.z.resize(elements.size());
-  const std::size_t module = at(target.facets()[facet].module);
+  const std::size_t count = elements->size();
+  Adjoint::Core adjoint{.facet = facet,
+                        .load = facet_loads(target, core.system().beam(), target.facets()[facet]),
+                        .modules = std::move(elements),
+                        .z = std::vector<ThreeVectors>(count)};
   const auto place = static_cast<std::size_t>(
-      std::ranges::lower_bound(elements, static_cast<Element>(module)) - elements.begin());
-  const auto& loads = adjoint.load = facet_loads(target, system.beam(), target.facets()[facet]);
+      std::ranges::lower_bound(*adjoint.modules, target.facets()[facet].module) -
+      adjoint.modules->begin());
   for (std::size_t i = 0; i < 3; ++i) {
-    std::vector<Vec6<double>> on_modules(elements.size());
-    on_modules[place] = loads[i];
-    system.set_loads(model::Loads(on_modules));
-    if (system.solve(kAdjointTolerance) != solver::LinearOutcome::kSolved) {
+    std::vector<Vec6<double>> loads(count);
+    loads[place] = adjoint.load[i];
+    const auto answer = core.answer(loads, kAdjointTolerance);
+    if (!answer) {
       return nullptr;
     }
-    const auto z = system.displacement();
-    for (std::size_t k = 0; k < elements.size(); ++k) {
-      adjoint.z[k][i] = z[k];
+    for (std::size_t k = 0; k < count; ++k) {
+      adjoint.z[k][i] = answer->displacement[k];
     }
-    const double norm = std::sqrt(std::max(0.0, base::dot(loads[i], z[place])));
-    adjoint.error[i] = system.is_exact() ? 0 : verdict::kEnergyFactor * kAdjointTolerance * norm;
+    adjoint.error[i] = answer->error;
   }
-  adjoint.modules = std::move(core);
   return std::make_shared<Adjoint>(target, std::move(adjoint));
 }
 
@@ -183,6 +178,13 @@ std::optional<std::size_t> Adjoint::count_in(const std::vector<Element>& element
     return std::nullopt;
   }
   return elements.size() - core_.z.size();
+}
+
+bool Adjoint::are_next(std::size_t count, std::span<const std::size_t> modules) const {
+  return count + modules.size() <= grown_modules_.size() &&
+         std::equal(modules.begin(), modules.end(),
+                    grown_modules_.begin() + static_cast<std::ptrdiff_t>(count),
+                    [](std::size_t a, Element b) { return a == at(b); });
 }
 
 /// Those to modules that came before it.
@@ -311,22 +313,14 @@ double Adjoint::error(const Triple& factors, std::size_t count) const {
 Adjoints find_adjoints(const model::RobotSpec& spec, const model::Robot& target,
                        const ElementSet& core, const std::vector<std::size_t>& facets,
                        int thread_count, const std::function<bool()>& is_late) {
-  const auto robot = model::Robot::create(part_of(spec, core), 1);
-  if (!robot) {
-    return {};
-  }
   const auto shared = std::make_shared<const std::vector<Element>>(core.elements());
   Adjoints adjoints(facets.size());
   host::Team team(thread_count);
   const std::size_t group_count = std::min(at(team.thread_count()), facets.size());
   team.each(group_count, [&](std::size_t group) {
-    const auto system = solver::make_linear_system(robot.value(), {.thread_count = 1});
-    if (!system) {
-      return;
-    }
-    system->set_law({});
-    for (std::size_t i = group; i < facets.size() && !is_late(); i += group_count) {
-      adjoints[i] = find_adjoint(*system, target, shared, facets[i]);
+    const auto stuck = StuckCore::make(spec, core, solver::Precision::kSingle);
+    for (std::size_t i = group; stuck && i < facets.size() && !is_late(); i += group_count) {
+      adjoints[i] = find_adjoint(*stuck, target, shared, facets[i]);
     }
   });
   std::erase(adjoints, nullptr);

@@ -6,9 +6,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -145,10 +147,8 @@ class Adjoint {
   /// How many modules a state on the way has beyond the core; none if it is not on the way.
   std::optional<std::size_t> count_in(const std::vector<Element>& elements) const;
 
-  /// Whether the module comes next, after so many.
-  bool is_next(std::size_t count, std::size_t module) const {
-    return count < grown_modules_.size() && base::at(grown_modules_[count]) == module;
-  }
+  /// Whether these modules come next, after so many.
+  bool are_next(std::size_t count, std::span<const std::size_t> modules) const;
 
   /// q u + z (f - K u) of displacements u that leave `rest`, f - K u, unbalanced, both by module of
   /// the target, in the state that has so many modules beyond the core.
@@ -219,8 +219,9 @@ class WatchedFacets {
  public:
   using Vec = base::Vec6<double>;
 
-  /// Keeps a reference to the robot, all modules of which are there in the end.
-  explicit WatchedFacets(const model::Robot& target);
+  /// Watches these and no others. Keeps a reference to the robot, all modules of which are there in
+  /// the end.
+  WatchedFacets(const model::Robot& target, const Adjoints& adjoints);
 
   /// What an adjoint says of a facet.
   struct Answer {
@@ -237,11 +238,8 @@ class WatchedFacets {
     }
   };
 
-  /// Watches these and no others, from the next begin() on; until then they may still grow.
-  void take(const Adjoints& adjoints);
-
-  /// Whether a facet has been asked for since take().
-  bool has_asked_for(std::size_t facet) const;
+  /// The facets that have been asked for and are watched.
+  const std::set<std::size_t>& asked_for() const { return asked_for_; }
 
   /// The robot with these modules was solved, with these displacements, by module of the target.
   void begin(const std::vector<Element>& elements, const std::vector<Vec>& u);
@@ -251,7 +249,7 @@ class WatchedFacets {
 
   /// The robot that is there now has got better displacements: modules that were there when it was
   /// solved have moved so far since, in the energy norm.
-  void improve(double moved);
+  void improve(double moved) { moved_ = moved; }
 
   /// For displacements u: those of the solved robot, or the better ones, and of the modules that
   /// have been attached since. None if the facet is not watched, or the robot does not grow the way
@@ -259,33 +257,27 @@ class WatchedFacets {
   std::optional<Answer> find(std::size_t facet, const std::vector<Vec>& u);
 
  private:
-  struct Watched {
-    std::shared_ptr<const Adjoint> adjoint;
-    bool is_asked_for = false;
-    bool has_begun = false;       ///< Since the robot was solved.
-    bool is_void = false;         ///< Until then.
-    bool is_settled = false;      ///< `force` is by the last displacements.
-    std::size_t begin_count = 0;  ///< The modules beyond its core when the robot was solved,
-    std::size_t attached = 0;     ///< and how many of attached_ there are in `force`.
-    Triple first{};               ///< The force when the robot was solved.
+  /// A facet's state on the way of its adjoint when the robot was solved.
+  struct Begun {
+    std::optional<std::size_t> count;  ///< The modules beyond the adjoint's core; none: not on it.
     Triple force{};
   };
 
-  void begin(Watched& watched);
-  bool goes_on(Watched& watched, std::size_t attached) const;
+  const Begun& begun(const Adjoint& adjoint);
   void find_rest();
   void pull(std::size_t module, base::Direction direction, std::size_t other);
 
   const model::Robot* target_;
   model::LatticeBeam<double> beam_;
-  LocalBalance there_;  ///< When the robot was solved.
-  std::vector<Watched> watched_;
-  std::vector<Element> elements_;      ///< When the robot was solved,
-  std::vector<Vec> u_;                 ///< its displacements,
-  std::vector<Vec> rest_;              ///< and f - K u; empty: not yet asked for.
-  double moved_ = 0;                   ///< As of improve().
-  std::vector<std::size_t> attached_;  ///< Since then.
-  std::size_t settled_count_ = 0;      ///< So many of these have the better displacements.
+  LocalBalance there_;                                              ///< When the robot was solved.
+  std::map<std::size_t, std::shared_ptr<const Adjoint>> adjoints_;  ///< By facet.
+  std::set<std::size_t> asked_for_;
+  std::map<std::size_t, Begun> begun_;  ///< By facet, as far as asked for since it was solved.
+  std::vector<Element> elements_;       ///< When the robot was solved,
+  std::vector<Vec> u_;                  ///< its displacements,
+  std::vector<Vec> rest_;               ///< and f - K u; empty: not yet asked for.
+  double moved_ = 0;                    ///< As of improve().
+  std::vector<std::size_t> attached_;   ///< Since then.
 };
 
 }  // namespace holdfast::plan

@@ -42,9 +42,10 @@ bool is_plain(const model::Robot& target) {
 
 }  // namespace
 
-EnergyBound::EnergyBound(const model::Robot& target, const LocalAdjoints& adjoints)
+EnergyBound::EnergyBound(const model::Robot& target, const LocalAdjoints& nearby,
+                         const Adjoints& adjoints)
     : target_(target),
-      adjoints_(adjoints),
+      adjoints_(nearby),
       local_(target),
       beam_(model::beam_section(target.material()), target.lattice()),
       changes_(target),
@@ -55,25 +56,40 @@ EnergyBound::EnergyBound(const model::Robot& target, const LocalAdjoints& adjoin
       u_(target.modules().size()),
       room_(target.facets().size()),
       nearby_(target.facets().size()),
-      watched_(target),
-      sway_(target, changes_.stiffness()) {
+      watched_(target, adjoints) {
   const Vec& h = changes_.stiffness();
   const double b = target.foot_half_width_mm();
   facet_per_norm_x_ = std::sqrt(h[3] + h[2] * b * b);
   facet_per_norm_y_ = std::sqrt(h[4] + h[2] * b * b);
 }
 
-/// Whether the module hands its load to a support of its own.
+/// Whether the module has a support of its own.
 bool EnergyBound::has_root(std::size_t module) const {
-  if (section_ != nullptr) {
-    return section_place_[module] >= 0;
-  }
   return first_facet_[module] < first_facet_[module + 1] ||
          target_.modules()[module].support == model::Support::kFixed;
 }
 
+/// Whether loads are handed no further: a support bears them, or the section's modules do.
+bool EnergyBound::ends_way(std::size_t module) const {
+  return section_ != nullptr ? section_place_[module] >= 0 : has_root(module);
+}
+
+/// Adds what the sideways pull of a module takes on its way to a support.
+void EnergyBound::add_sway(std::size_t module) {
+  const Vec& h = changes_.stiffness();
+  const double pitch = target_.material().pitch_mm;
+  const double n = nodes_[module].depth + 1.0;
+  const double arms = pitch * pitch * n * (4 * n * n - 1) / 12;
+  const double more =
+      target_.mass(module) * std::sqrt(n / *std::min_element(h.begin(), h.begin() + 3) +
+                                       arms / *std::min_element(h.begin() + 3, h.end()));
+  double& sum = sway_[nodes_[module].root];
+  sway_square_ += more * (2 * sum + more);
+  sum += more;
+}
+
 /// How far a way down through this neighbour leads aside within two steps, squared, in mm^2.
-double EnergyBound::lean(std::size_t module, std::size_t neighbour) const {
+double EnergyBound::distance_aside(std::size_t module, std::size_t neighbour) const {
   const Node& next = nodes_[neighbour];
   const Vec& below = changes_.place(next.way.to < 0 ? neighbour : base::at(next.way.to));
   const double x = below[0] - changes_.place(module)[0];
@@ -81,13 +97,13 @@ double EnergyBound::lean(std::size_t module, std::size_t neighbour) const {
   return x * x + y * y;
 }
 
-/// Finds the way down: to one of the neighbours that are nearest to a support, that through which
+/// The way down: to one of the neighbours that are nearest to a support, that through which
 /// it leads down most nearly straight, as a weight that is carried aside costs much.
-void EnergyBound::hang(std::size_t module) {
+void EnergyBound::choose_way(std::size_t module) {
   Node& node = nodes_[module];
   const int straight = base::index(base::down(target_.lattice()));
   std::int32_t depth_min = std::numeric_limits<std::int32_t>::max();
-  double lean_min = 0;
+  double aside_min = 0;
   for (const base::Direction direction : base::directions(target_.lattice())) {
     const int d = base::index(direction);
     const std::int32_t other = target_.connected()[module][base::at(d)];
@@ -95,15 +111,16 @@ void EnergyBound::hang(std::size_t module) {
         nodes_[base::at(other)].depth > depth_min) {
       continue;
     }
-    const double aside = lean(module, base::at(other));
-    if (nodes_[base::at(other)].depth < depth_min || aside < lean_min ||
-        (aside == lean_min && d == straight)) {
+    const double aside = distance_aside(module, base::at(other));
+    if (nodes_[base::at(other)].depth < depth_min || aside < aside_min ||
+        (aside == aside_min && d == straight)) {
       depth_min = nodes_[base::at(other)].depth;
-      lean_min = aside;
+      aside_min = aside;
       node.way = {.to = other, .direction = d};
     }
   }
   node.depth = has_root(module) ? 0 : depth_min + 1;
+  node.root = has_root(module) ? module : nodes_[base::at(node.way.to)].root;
 }
 
 /// Moves until it is in balance, all others staying where they are.
@@ -115,16 +132,12 @@ void EnergyBound::take_place(std::size_t module) {
 /// Adds what the gaps of its beams mean as long as no load goes through these.
 void EnergyBound::open_gaps(std::size_t module) {
   const Node& node = nodes_[module];
-  for (const base::Direction direction : base::directions(target_.lattice())) {
-    const int d = base::index(direction);
-    const std::int32_t other = local_.neighbour(module, d);
-    if (other == model::Robot::kNoNeighbour ||
-        (nodes_[base::at(other)].is_new && nodes_[base::at(other)].place > node.place)) {
-      continue;
+  local_.for_each_neighbour(module, [&](base::Direction direction, std::size_t other) {
+    if (!nodes_[other].is_new || nodes_[other].place <= node.place) {
+      nodes_[other].is_host = true;
+      changes_.open_gap(module, base::index(direction), u_[module], u_[other]);
     }
-    nodes_[base::at(other)].is_host = true;
-    changes_.open_gap(module, d, u_[module], u_[base::at(other)]);
-  }
+  });
 }
 
 /// Of all modules that are there, by where they are now.
@@ -170,7 +183,7 @@ void EnergyBound::look_at_facet(std::size_t index) {
 double EnergyBound::way_energy(std::size_t from) const {
   const Vec load = load_about_origin(target_, from, changes_.place(from));
   double energy = 0;
-  for (std::size_t module = from; !has_root(module);) {
+  for (std::size_t module = from; !ends_way(module);) {
     const Way& way = nodes_[module].way;
     energy += changes_.energy_of(changes_.middle(load, module, way.direction));
     module = base::at(way.to);
@@ -187,15 +200,13 @@ bool EnergyBound::is_far_aside(std::size_t module) const {
 /// What a module's beams put on its neighbours, but for fixed ones.
 std::vector<LoadSpread::Load> EnergyBound::loads_beside(std::size_t module) const {
   std::vector<LoadSpread::Load> loads;
-  for (const base::Direction direction : base::directions(target_.lattice())) {
-    const std::int32_t other = local_.neighbour(module, base::index(direction));
-    if (other != model::Robot::kNoNeighbour &&
-        target_.modules()[base::at(other)].support != model::Support::kFixed) {
-      LoadSpread::Load& load = loads.emplace_back(LoadSpread::Load{.module = base::at(other)});
+  local_.for_each_neighbour(module, [&](base::Direction direction, std::size_t other) {
+    if (target_.modules()[other].support != model::Support::kFixed) {
+      LoadSpread::Load& load = loads.emplace_back(LoadSpread::Load{.module = other});
       base::add_times(load.force, -1,
-                      beam_.end_force(base::opposite(direction), u_[load.module], u_[module]));
+                      beam_.end_force(base::opposite(direction), u_[other], u_[module]));
     }
-  }
+  });
   return loads;
 }
 
@@ -203,19 +214,16 @@ std::vector<LoadSpread::Load> EnergyBound::loads_beside(std::size_t module) cons
 /// to supports through all modules near its way. False if that cannot be.
 bool EnergyBound::spread(std::size_t from) {
   std::vector<std::size_t> way = {from};
-  while (!has_root(way.back())) {
+  while (!ends_way(way.back())) {
     way.push_back(base::at(nodes_[way.back()].way.to));
   }
   const std::vector<LoadSpread::Share> shares = spread_.spread(way, loads_beside(from), local_);
   if (shares.empty()) {
     return false;
   }
-  for (const base::Direction direction : base::directions(target_.lattice())) {
-    const std::int32_t other = local_.neighbour(from, base::index(direction));
-    if (other != model::Robot::kNoNeighbour) {
-      changes_.bear(from, base::index(direction), u_[from], u_[base::at(other)]);
-    }
-  }
+  local_.for_each_neighbour(from, [&](base::Direction direction, std::size_t other) {
+    changes_.bear(from, base::index(direction), u_[from], u_[other]);
+  });
   std::ranges::for_each(shares, [&](const LoadSpread::Share& share) { bear(share); });
   return true;
 }
@@ -239,7 +247,7 @@ void EnergyBound::bear(const LoadSpread::Share& share) {
 void EnergyBound::carry(std::size_t from) {
   const Vec load = load_about_origin(target_, from, changes_.place(from));
   std::size_t module = from;
-  for (; !has_root(module); module = base::at(nodes_[module].way.to)) {
+  for (; !ends_way(module); module = base::at(nodes_[module].way.to)) {
     changes_.hand_on(module, nodes_[module].way.direction, load);
   }
   if (section_ != nullptr) {
@@ -273,10 +281,6 @@ void EnergyBound::forget_nearby(const std::vector<Element>& elements) {
       }
     }
   }
-  forget_nearby(is_changed);
-}
-
-void EnergyBound::forget_nearby(const std::vector<bool>& is_changed) {
   for (std::optional<LocalAdjoint>& nearby : nearby_) {
     if (nearby &&
         std::ranges::any_of(nearby->patch, [&](std::size_t i) { return is_changed[i]; })) {
@@ -293,20 +297,22 @@ bool EnergyBound::begin(const std::vector<Element>& elements, const verdict::Ass
   if (solved.verdict != verdict::Verdict::kSafe || !is_stuck || solved.several ||
       solved.stability_rule == verdict::StabilityRule::kContactForces ||
       solved.contact_model == verdict::ContactModel::kUnilateral || !is_plain(target_)) {
+    has_core_ = false;
     return false;
   }
-  if (section == nullptr && section_ == nullptr && is_grown_to(elements)) {
-    settle_new();
-  } else {
-    section_ = section;
-    hang_all(elements);
-  }
+  has_core_ = true;
+  section_ = section;
+  choose_ways(elements);
   solved_error_ = verdict::kEnergyFactor * solved.equilibrium.energy_error;
   solved_ratio_ = solved.load_ratio_max ? std::max(0.0, solved.load_ratio_range.high) : 0.0;
   for (std::size_t i = 0; i < elements.size(); ++i) {
     u_[base::at(elements[i])] = solved.equilibrium.displacement[i];
   }
-  sway_.begin(elements);
+  sway_.assign(nodes_.size(), 0);
+  sway_square_ = 0;
+  for (const Element element : elements) {
+    add_sway(base::at(element));
+  }
   still_moved_ = moved_ = moved_mass();
   if (section_ != nullptr) {
     still_ = u_;
@@ -318,20 +324,12 @@ bool EnergyBound::begin(const std::vector<Element>& elements, const verdict::Ass
   return true;
 }
 
-/// Whether these modules are there and no others: then all of them hang already.
-bool EnergyBound::is_grown_to(const std::vector<Element>& elements) const {
-  const auto is_there = [&](Element element) { return nodes_[base::at(element)].is_there; };
-  return std::ranges::all_of(elements, is_there) &&
-         std::ranges::count_if(nodes_, &Node::is_there) == std::ssize(elements);
-}
-
 /// Begins with nothing but these modules, from supports upwards.
-void EnergyBound::hang_all(const std::vector<Element>& elements) {
+void EnergyBound::choose_ways(const std::vector<Element>& elements) {
   forget_nearby(elements);
   std::ranges::fill(nodes_, Node{});
   facets_.clear();
   forget_changes();
-  spread_.clear();
   local_.assign(elements);
   section_place_.assign(section_ == nullptr ? 0 : nodes_.size(), -1);
   for (std::size_t i = 0; section_ != nullptr && i < section_->modules().size(); ++i) {
@@ -358,11 +356,13 @@ void EnergyBound::hang_all(const std::vector<Element>& elements) {
     }
   }
   for (const std::size_t module : queue) {
-    if (!has_root(module)) {
-      hang(module);
+    if (has_root(module)) {
+      nodes_[module].root = module;
+    } else {
+      choose_way(module);
     }
   }
-  hang_section();
+  choose_section_ways();
   for (const Element element : elements) {
     const std::size_t module = base::at(element);
     for (std::size_t facet = first_facet_[module]; facet < first_facet_[module + 1]; ++facet) {
@@ -371,34 +371,32 @@ void EnergyBound::hang_all(const std::vector<Element>& elements) {
   }
 }
 
-/// The ways between modules of the section: from each to an earlier one.
-void EnergyBound::hang_section() {
-  for (std::size_t i = 1; section_ != nullptr && i < section_->modules().size(); ++i) {
+/// The ways between modules of the section: from each to an earlier one, from the first to none.
+void EnergyBound::choose_section_ways() {
+  for (std::size_t i = 0; section_ != nullptr && i < section_->modules().size(); ++i) {
     const std::size_t module = section_->modules()[i];
-    for (const base::Direction direction : base::directions(target_.lattice())) {
-      const std::int32_t other = local_.neighbour(module, base::index(direction));
-      if (other != model::Robot::kNoNeighbour && section_place_[base::at(other)] >= 0 &&
-          base::at(section_place_[base::at(other)]) < i) {
-        nodes_[module].way = {.to = other, .direction = base::index(direction)};
+    nodes_[module].way = {};
+    local_.for_each_neighbour(module, [&](base::Direction direction, std::size_t other) {
+      if (section_place_[other] >= 0 && base::at(section_place_[other]) < i) {
+        nodes_[module].way = {.to = static_cast<std::int32_t>(other),
+                              .direction = base::index(direction)};
       }
-    }
+    });
   }
 }
 
 /// What has been attached since the robot was solved is part of it now.
 void EnergyBound::settle_new() {
-  std::vector<bool> is_changed(nodes_.size());
-  for (const std::size_t module : new_) {
-    nodes_[module].is_new = false;
-    is_changed[module] = true;
-    for (const std::int32_t other : target_.connected()[module]) {
-      if (other != model::Robot::kNoNeighbour) {
-        nodes_[base::at(other)].is_host = false;
-        is_changed[base::at(other)] = true;
-      }
+  std::vector<Element> elements;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    if (nodes_[i].is_there) {
+      elements.push_back(static_cast<Element>(i));
     }
   }
-  forget_nearby(is_changed);
+  forget_nearby(elements);
+  for (Node& node : nodes_) {
+    node.is_new = node.is_host = false;
+  }
   forget_changes();
 }
 
@@ -480,19 +478,17 @@ double EnergyBound::strain_by_adjoint(std::size_t index) {
   return largest;
 }
 
-std::map<std::size_t, int> EnergyBound::take_doubtful() { return std::exchange(doubtful_, {}); }
-
 std::optional<double> EnergyBound::add(Element element) {
   const std::size_t module = base::at(element);
-  if (target_.modules()[module].support == model::Support::kFixed) {
+  if (!has_core_ || target_.modules()[module].support == model::Support::kFixed) {
     return std::nullopt;
   }
-  hang(module);
+  choose_way(module);
   Node& node = nodes_[module];
   node.is_there = true;
   node.is_new = true;
   node.place = new_.size();
-  sway_.attach(module);
+  add_sway(module);
   if (section_ != nullptr) {
     return add_above_section(module);
   }
@@ -514,7 +510,8 @@ std::optional<double> EnergyBound::add(Element element) {
 }
 
 std::optional<double> EnergyBound::add_above_section(std::size_t module) {
-  if (first_facet_[module] < first_facet_[module + 1]) {
+  const std::size_t section_depth = base::at(nodes_[section_->modules().front()].depth);
+  if (has_root(module) || base::at(nodes_[module].depth) <= section_depth) {
     return std::nullopt;
   }
   new_.push_back(module);
@@ -543,12 +540,11 @@ void EnergyBound::move_with_section() {
     look_at_facet(facet);
   }
   for (const std::size_t module : new_) {
-    for (const base::Direction direction : base::directions(target_.lattice())) {
-      const std::int32_t other = local_.neighbour(module, base::index(direction));
-      if (other != model::Robot::kNoNeighbour && !nodes_[base::at(other)].is_new) {
-        move(base::at(other));
+    local_.for_each_neighbour(module, [&](base::Direction /*direction*/, std::size_t other) {
+      if (!nodes_[other].is_new) {
+        move(other);
       }
-    }
+    });
   }
   std::ranges::for_each(new_, [&](std::size_t module) { local_.erase(module); });
   std::ranges::for_each(new_, [&](std::size_t module) { take_place(module); });

@@ -7,13 +7,13 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "bounds/adjoint.hpp"
 #include "bounds/followed_robot.hpp"
 #include "bounds/load_spread.hpp"
 #include "bounds/section_response.hpp"
-#include "bounds/sway_bound.hpp"
 #include "equilibria/changed_forces.hpp"
 #include "equilibria/local_balance.hpp"
 #include "holdfast/model/lattice_beam.hpp"
@@ -43,7 +43,13 @@ namespace holdfast::plan {
 /// beams, and what these put on its neighbours goes down through all modules near instead
 /// (LoadSpread).
 ///
-/// The centre of mass moves as u says, give or take what |s - h w| leaves open (SwayBound).
+/// The centre of mass moves as u says. Let l pull every module sideways by 1 N for each kg of it:
+/// by Cauchy and Schwarz the sum of masses times displacements along an axis is off by no more than
+/// |K^-1 l| times what u is off. That norm is no more than that of any forces which balance l, such
+/// as those that take each pull m down a way of n springs to a support, the k-th of which is no
+/// farther from it than k - 1/2 pitches, and which cost no more than
+///   m (n / h_force + pitch^2 n (4 n^2 - 1) / 12 / h_moment)^(1/2).
+/// Ways to one support add up to their sum at most, those to different ones to the root of squares.
 ///
 /// Facets for which that is too coarse are looked at by what is known of them from the modules
 /// around (LocalAdjoint) or, where somebody has found it, from the whole robot (Adjoint).
@@ -51,21 +57,26 @@ namespace holdfast::plan {
 /// Above a section of a slender robot, ways end at the section's modules, and the core moves by its
 /// answer to the resultant there (SectionResponse): s and h w then change alike below. New modules
 /// are brought into balance on the core where it is now.
+///
+/// Serves a robot while it grows, however often it is solved on the way.
 class EnergyBound {
  public:
-  /// Keeps references to the whole robot and to what is known of its facets.
-  EnergyBound(const model::Robot& target, const LocalAdjoints& adjoints);
+  /// Keeps references to the whole robot and to what is known of its facets by the modules near
+  /// them; `adjoints` serve as long as modules are attached in the order in which these have grown.
+  EnergyBound(const model::Robot& target, const LocalAdjoints& nearby,
+              const Adjoints& adjoints = {});
 
   /// Begins with a solved robot, whose modules are `elements` of the target, in that order. False
   /// if nothing can be built on it: it is not safe, a facet tilts or is open, or the polygon does
-  /// not decide.
+  /// not decide. Whatever was attached before must be there.
   /// With a section of this robot, modules that are attached must not have facets. Keeps a
   /// reference to it.
   bool begin(const std::vector<Element>& elements, const verdict::Assessment& solved,
              const SectionResponse* section = nullptr);
 
   /// Attaches a module, which must be beside one that is there. Returns a bound of the largest load
-  /// ratio, or none if the robot may be unsafe; it is then to be solved.
+  /// ratio, or none if the robot may be unsafe, or where nothing was begun; it is then to be
+  /// solved.
   std::optional<double> add(Element module);
 
   /// Goes on from better displacements of the robot that is there now, all of whose facets are
@@ -73,19 +84,12 @@ class EnergyBound {
   std::optional<double> improve(const std::vector<base::Vec6<double>>& displacement,
                                 const FollowedRobot::Result& known);
 
-  /// No module is attached until the next begin(): gives back what takes much memory.
-  void end() { spread_.clear(); }
-
-  /// From the next begin() on the forces of these facets are looked at with their adjoints, as long
-  /// as modules are attached in the order in which these have grown.
-  void take_adjoints(const Adjoints& adjoints) { watched_.take(adjoints); }
-
-  /// Whether the adjoint of a facet has been asked for since it was taken.
-  bool has_asked_for(std::size_t facet) const { return watched_.has_asked_for(facet); }
+  /// The facets whose adjoints have been asked for.
+  const std::set<std::size_t>& asked_for() const { return watched_.asked_for(); }
 
   /// How often each facet has left a state without a bound, alone or with others, or nearly so by
-  /// its adjoint, since this was asked last.
-  std::map<std::size_t, int> take_doubtful();
+  /// its adjoint.
+  const std::map<std::size_t, int>& doubtful() const { return doubtful_; }
 
   /// How far the displacements are off in the energy norm, at most.
   double energy_error() const {
@@ -94,7 +98,7 @@ class EnergyBound {
 
   /// By how far bending moves the centre of mass of the robot that is there now, in plan, at most.
   double shift_mm() const {
-    return moved_.shift_mm(sway_.error_per_norm() * (energy_error() + solved_error_));
+    return moved_.shift_mm(std::sqrt(sway_square_) * (energy_error() + solved_error_));
   }
 
   /// That of a module that has a facet, or is new or beside such a one.
@@ -111,24 +115,25 @@ class EnergyBound {
 
   struct Node {
     bool is_there = false;
-    bool is_new = false;   ///< Attached since the robot was solved.
-    bool is_host = false;  ///< A module has been attached beside it since.
-    std::int32_t depth = 0;
-    std::size_t place = 0;  ///< If new: in new_.
-    Way way;                ///< Towards the support; none at a support.
+    bool is_new = false;     ///< Attached since the robot was solved.
+    bool is_host = false;    ///< A module has been attached beside it since.
+    std::int32_t depth = 0;  ///< Steps to a support.
+    std::size_t place = 0;   ///< If new: in new_.
+    Way way;                 ///< Towards the support; none at a support.
+    std::size_t root = 0;    ///< The module with that support.
   };
 
-  bool is_grown_to(const std::vector<Element>& elements) const;
-  void hang_all(const std::vector<Element>& elements);
-  void hang_section();
+  void choose_ways(const std::vector<Element>& elements);
+  void choose_section_ways();
   void settle_new();
   void forget_changes();
   void forget_nearby(const std::vector<Element>& elements);
-  void forget_nearby(const std::vector<bool>& is_changed);
   std::optional<double> bound();
   bool has_root(std::size_t module) const;
-  double lean(std::size_t module, std::size_t neighbour) const;
-  void hang(std::size_t module);
+  bool ends_way(std::size_t module) const;
+  void add_sway(std::size_t module);
+  double distance_aside(std::size_t module, std::size_t neighbour) const;
+  void choose_way(std::size_t module);
   void take_place(std::size_t module);
   void open_gaps(std::size_t module);
   double way_energy(std::size_t from) const;
@@ -149,6 +154,7 @@ class EnergyBound {
 
   const model::Robot& target_;
   const LocalAdjoints& adjoints_;
+  bool has_core_ = false;  ///< A solved robot was begun with.
   LocalBalance local_;
   model::LatticeBeam<double> beam_;
   ChangedForces changes_;
@@ -164,10 +170,11 @@ class EnergyBound {
   std::vector<double> room_;         ///< By facet of the target: what |s - h w| / 2 may be.
   std::vector<std::optional<LocalAdjoint>> nearby_;  ///< By facet, as far as asked for.
   WatchedFacets watched_;
-  SwayBound sway_;
-  verdict::MovedMass moved_;             ///< By u_, of all modules that are there,
+  std::vector<double> sway_;  ///< By module with a support: of all ways to it, kg mm/(N mm)^(1/2).
+  double sway_square_ = 0;    ///< The sum of squares.
+  verdict::MovedMass moved_;  ///< By u_, of all modules that are there,
   verdict::MovedMass still_moved_;       ///< and when the robot was solved.
-  std::map<std::size_t, int> doubtful_;  ///< As take_doubtful() says.
+  std::map<std::size_t, int> doubtful_;  ///< As doubtful() says.
   double solved_ratio_ = 0;
   double solved_error_ = 0;
   const SectionResponse* section_ = nullptr;

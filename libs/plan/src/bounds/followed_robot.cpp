@@ -4,14 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <span>
 #include <unordered_set>
 #include <utility>
 
 #include "block_product.hpp"
-#include "bounds/robot_growth.hpp"
 #include "dense.hpp"
 #include "equilibria/carried_force.hpp"
 #include "holdfast/base/lattice.hpp"
@@ -66,24 +64,24 @@ Vec6<double> difference_of(const Vec6<double>& a, const Vec6<double>& b) {
   return base::sum_of(a, -1.0, b);
 }
 
-double work_of(const std::vector<Vec6<double>>& loads, const std::vector<Vec6<double>>& u) {
-  double work = 0;
-  for (std::size_t i = 0; i < loads.size(); ++i) {
-    work += base::dot(loads[i], u[i]);
-  }
-  return work;
-}
-
 }  // namespace
 
-FollowedRobot::FollowedRobot(const model::RobotSpec& spec, const model::Robot& target)
+FollowedRobot::FollowedRobot(const model::RobotSpec& spec, const model::Robot& target,
+                             const ElementSet& state, const verdict::Assessment& solved)
     : spec_(spec),
       target_(target),
       beam_(model::beam_section(target.material()), target.lattice()),
       stiffness_(middle_stiffness(beam_)),
       ratio_per_norm_(model::load_ratio_per_energy_norm(target)),
       local_(target),
-      first_facet_(model::facet_starts(target)) {
+      first_facet_(model::facet_starts(target)),
+      place_(target.modules().size(), kAbsent),
+      core_(state),
+      elements_(state.elements()),
+      u_(target.modules().size()),
+      given_(elements_.size()),
+      moved_(elements_.size()),
+      core_error_(verdict::kEnergyFactor * solved.equilibrium.energy_error) {
   for (std::size_t i = 0; i < 6; ++i) {
     flexibility_[i] = 1 / stiffness_[i];
   }
@@ -91,37 +89,10 @@ FollowedRobot::FollowedRobot(const model::RobotSpec& spec, const model::Robot& t
     const Vec& load = target.loads()[i];
     unit_ = std::max(unit_, std::hypot(load[0], load[1], load[2]) / std::sqrt(stiffness_[2]));
   }
-}
-
-void FollowedRobot::begin(const ElementSet& state, const verdict::Assessment& solved) {
-  core_ = state;
-  elements_ = state.elements();
   local_.assign(elements_);
-  system_.reset();
-  robot_.reset();
-  new_.clear();
-  springs_.clear();
-  loaded_.clear();
-  solved_count_ = 0;
-  place_.assign(target_.modules().size(), kAbsent);
-  u_.resize(target_.modules().size());
   for (std::size_t i = 0; i < elements_.size(); ++i) {
     place_[at(elements_[i])] = static_cast<std::int32_t>(i);
     u_[at(elements_[i])] = solved.equilibrium.displacement[i];
-  }
-  core_error_ = verdict::kEnergyFactor * solved.equilibrium.energy_error;
-  motion_error_ = 0;
-  iteration_count_ = 0;
-  given_.assign(elements_.size(), {});
-  moved_.assign(elements_.size(), {});
-}
-
-void FollowedRobot::end() {
-  system_.reset();
-  robot_.reset();
-  loaded_ = std::vector<Loaded>();
-  for (std::vector<Vec>* const each : {&given_, &moved_, &change_, &motion_}) {
-    *each = std::vector<Vec>();
   }
 }
 
@@ -131,17 +102,13 @@ void FollowedRobot::choose_way(NewModule& added) const {
     return;
   }
   added.depth = std::numeric_limits<int>::max();
-  for (const Direction direction : base::directions(target_.lattice())) {
-    const std::int32_t other = local_.neighbour(added.module, base::index(direction));
-    if (other == model::Robot::kNoNeighbour) {
-      continue;
-    }
-    const int depth = is_new(at(other)) ? new_[place_in_new(at(other))].depth + 1 : 1;
+  local_.for_each_neighbour(added.module, [&](Direction direction, std::size_t other) {
+    const int depth = is_new(other) ? new_[place_in_new(other)].depth + 1 : 1;
     if (depth < added.depth) {
       added.depth = depth;
       added.way = base::index(direction);
     }
-  }
+  });
 }
 
 void FollowedRobot::add(Element element) {
@@ -208,12 +175,11 @@ std::vector<std::size_t> FollowedRobot::modules_near(std::vector<std::size_t> mo
   for (int step = 0; step < kNear; ++step) {
     const std::size_t end = modules.size();
     for (; begin < end; ++begin) {
-      for (const Direction direction : base::directions(target_.lattice())) {
-        const std::int32_t other = local_.neighbour(modules[begin], base::index(direction));
-        if (other != model::Robot::kNoNeighbour && seen.insert(at(other)).second) {
-          modules.push_back(at(other));
+      local_.for_each_neighbour(modules[begin], [&](Direction /*direction*/, std::size_t other) {
+        if (seen.insert(other).second) {
+          modules.push_back(other);
         }
-      }
+      });
     }
   }
   modules.erase(modules.begin(), modules.begin() + static_cast<std::ptrdiff_t>(count));
@@ -241,14 +207,14 @@ std::vector<FollowedRobot::Spring> FollowedRobot::find_springs(std::size_t first
       springs.push_back(
           {.module = module, .direction = base::index(target_.facets()[i].direction)});
     }
-    for (const Direction direction : base::directions(target_.lattice())) {
-      const std::int32_t other = local_.neighbour(module, base::index(direction));
-      const bool is_later = other != model::Robot::kNoNeighbour && is_new(at(other)) &&
-                            place_[at(other)] < place_[module];
-      if (other != model::Robot::kNoNeighbour && !is_later) {
-        springs.push_back({.module = module, .other = other, .direction = base::index(direction)});
+    local_.for_each_neighbour(module, [&](Direction direction, std::size_t other) {
+      const bool is_later = is_new(other) && place_[other] < place_[module];
+      if (!is_later) {
+        springs.push_back({.module = module,
+                           .other = static_cast<std::int32_t>(other),
+                           .direction = base::index(direction)});
       }
-    }
+    });
   }
   for (Spring& spring : springs) {
     spring.force = gap_force(spring);
@@ -326,26 +292,16 @@ std::vector<FollowedRobot::Vec> FollowedRobot::find_forces(std::size_t first,
 
 /// Single precision, or where the core is too slender for it double; solved for these loads.
 bool FollowedRobot::make_system(const std::vector<Vec>& loads) {
-  auto robot = model::Robot::create(part_of(spec_, *core_), 1);
-  if (!robot) {
-    return false;
-  }
-  robot_ = std::make_unique<model::Robot>(std::move(robot).value());
   for (const auto precision : {solver::Precision::kSingle, solver::Precision::kDouble}) {
-    system_ = solver::make_linear_system(*robot_, {.precision = precision, .thread_count = 1});
-    if (!system_) {
-      return false;
-    }
-    system_->set_law({});
-    system_->set_loads(model::Loads(loads));
-    if (system_->solve(kToleranceFirst) == solver::LinearOutcome::kSolved) {
-      const std::vector<Vec> z = system_->displacement();
-      const double whole = std::sqrt(std::max(0.0, work_of(loads, z)));
+    stuck_ = StuckCore::make(spec_, core_, precision);
+    const auto first = stuck_ ? stuck_->answer(loads, kToleranceFirst) : std::nullopt;
+    if (first) {
+      const double whole = std::sqrt(std::max(0.0, work_of(loads, first->displacement)));
       tolerance_ = std::min(kToleranceFirst, kTolerance * unit_ / whole);
-      return system_->solve(tolerance_) == solver::LinearOutcome::kSolved;
+      return stuck_->system().solve(tolerance_) == solver::LinearOutcome::kSolved;
     }
   }
-  system_.reset();
+  stuck_.reset();
   return false;
 }
 
@@ -354,7 +310,7 @@ double FollowedRobot::solution_error(double coarseness) const {
   const double error_min = kErrorShareMin * kTolerance * unit_;
   return coarseness == kRoughly
              ? kRoughly
-             : verdict::kEnergyFactor * std::max(system_->energy_error(), error_min);
+             : verdict::kEnergyFactor * std::max(stuck_->system().energy_error(), error_min);
 }
 
 /// How the core moves if it takes these loads besides: to so many times the tolerance, or, if that
@@ -364,24 +320,24 @@ bool FollowedRobot::find_motion(std::vector<Vec> change, double coarseness) {
   for (std::size_t i = 0; i < loads.size(); ++i) {
     base::add_to(loads[i], change[i]);
   }
-  if (!system_) {
+  if (!stuck_) {
     if (!make_system(loads)) {
       return false;
     }
     coarseness = 1;
   } else {
-    system_->change_loads(model::Loads(std::move(loads)));
-    const auto outcome =
-        coarseness == kRoughly ? system_->approach() : system_->solve(coarseness * tolerance_);
+    stuck_->system().change_loads(model::Loads(std::move(loads)));
+    const auto outcome = coarseness == kRoughly ? stuck_->system().approach()
+                                                : stuck_->system().solve(coarseness * tolerance_);
     if (outcome != solver::LinearOutcome::kSolved) {
-      system_.reset();
+      stuck_.reset();
       return false;
     }
   }
-  solution_error_ = system_->is_exact() ? 0 : solution_error(coarseness);
-  iteration_count_ = system_->report().iteration_count;
+  solution_error_ = stuck_->system().is_exact() ? 0 : solution_error(coarseness);
+  iteration_count_ = stuck_->system().report().iteration_count;
   change_ = std::move(change);
-  motion_ = system_->displacement();
+  motion_ = stuck_->system().displacement();
   for (std::size_t i = 0; i < motion_.size(); ++i) {
     motion_[i] = difference_of(motion_[i], moved_[i]);
   }
@@ -431,43 +387,16 @@ double FollowedRobot::ratio_of(std::size_t module, std::size_t other, int direct
   return std::max(known, connection_ratio(target_, module, other, direction, force));
 }
 
-/// The core's connections, by their load ratios when it was solved.
-const std::vector<FollowedRobot::Loaded>& FollowedRobot::most_loaded_first() {
-  if (!loaded_.empty()) {
-    return loaded_;
-  }
-  const auto still = [&](std::size_t module) {
-    return difference_of(u_[module], moved_[at(place_[module])]);
-  };
+/// That no connection's exceeds, if the displacements are off by `error`.
+double FollowedRobot::load_ratio(double error) const {
+  double largest = 0;
   for (const Element element : elements_) {
     const std::size_t module = at(element);
-    for (const Direction direction : base::directions(target_.lattice())) {
-      const std::int32_t other = local_.neighbour(module, base::index(direction));
-      if (base::index(direction) % 2 != 0 || other == model::Robot::kNoNeighbour ||
-          is_new(at(other))) {
-        continue;
+    local_.for_each_neighbour(module, [&](Direction direction, std::size_t other) {
+      if (base::index(direction) % 2 == 0 && !is_new(other)) {
+        largest = ratio_of(module, other, base::index(direction), largest);
       }
-      const Vec force = beam_.middle_force(direction, still(module), still(at(other)));
-      loaded_.push_back(
-          {.module = module,
-           .other = at(other),
-           .direction = base::index(direction),
-           .ratio = connection_ratio(target_, module, at(other), base::index(direction), force)});
-    }
-  }
-  std::ranges::sort(loaded_, std::greater(), &Loaded::ratio);
-  return loaded_;
-}
-
-/// That no connection's exceeds, if the core has moved so far and the displacements are off by
-/// `error`.
-double FollowedRobot::load_ratio(double moved, double error) {
-  double largest = 0;
-  for (const Loaded& each : most_loaded_first()) {
-    if (each.ratio + ratio_per_norm_ * moved <= largest) {
-      break;
-    }
-    largest = ratio_of(each.module, each.other, each.direction, largest);
+    });
   }
   for (const Spring& spring : springs_) {
     if (spring.other >= 0) {
@@ -481,7 +410,7 @@ FollowedRobot::Result FollowedRobot::finish(double gap_energy) {
   const double solved = core_error_ + motion_error_;
   const double error = std::sqrt(gap_energy + solved * solved);
   const double moved = std::sqrt(std::max(0.0, work_of(given_, moved_))) + motion_error_;
-  return {.energy_error = error, .load_ratio = load_ratio(moved, error), .moved = moved};
+  return {.energy_error = error, .load_ratio = load_ratio(error), .moved = moved};
 }
 
 /// Gives loads to the core; new modules follow it. False: it cannot be solved.

@@ -7,12 +7,11 @@
 #include <optional>
 #include <vector>
 
-#include "bounds/following_worth.hpp"
 #include "equilibria/local_balance.hpp"
+#include "equilibria/stuck_core.hpp"
 #include "holdfast/model/lattice_beam.hpp"
 #include "holdfast/model/robot.hpp"
 #include "holdfast/plan/element_set.hpp"
-#include "holdfast/solver/linear_system.hpp"
 #include "holdfast/verdict/assessment.hpp"
 
 namespace holdfast::plan {
@@ -42,14 +41,14 @@ class FollowedRobot {
   struct Result {
     double energy_error = 0;  ///< How far displacement() is off in the energy norm, at most.
     double load_ratio = 0;    ///< None exceeds this.
-    double moved = 0;  ///< How far the core has moved since begin(), in the energy norm, at most.
+    double moved =
+        0;  ///< How far the core has moved since it was solved, in the energy norm, at most.
   };
 
-  /// Keeps a reference to the robot, all modules of which are there in the end.
-  FollowedRobot(const model::RobotSpec& spec, const model::Robot& target);
-
-  /// Takes a safe state, all of whose facets are stuck, as the core.
-  void begin(const ElementSet& state, const verdict::Assessment& solved);
+  /// Takes a safe state, all of whose facets are stuck, as the core. Keeps references to the whole
+  /// robot, all modules of which are there in the end, and to what it is made of.
+  FollowedRobot(const model::RobotSpec& spec, const model::Robot& target, const ElementSet& state,
+                const verdict::Assessment& solved);
 
   /// Attaches a module, which must be beside one that is there, and not fixed.
   void add(Element module);
@@ -63,14 +62,8 @@ class FollowedRobot {
   /// The same nearer, after solve(), which asks for it once where that is sure to pay.
   std::optional<Result> improve();
 
-  /// Gives back what takes much memory; begin() is next.
-  void end();
-
-  /// Multigrid's, in all solutions since begin().
+  /// Multigrid's, in all solutions.
   int iteration_count() const { return iteration_count_; }
-
-  /// Of following this robot so far, through all that were begun with.
-  FollowingWorth& worth() { return worth_; }
 
  private:
   /// A beam or a facet of a new module, and the force in its middle, local frame.
@@ -79,14 +72,6 @@ class FollowedRobot {
     std::int32_t other = -1;  ///< None: a facet.
     int direction = 0;
     Vec force{};
-  };
-
-  /// A connection of the core.
-  struct Loaded {
-    std::size_t module = 0;
-    std::size_t other = 0;
-    int direction = 0;
-    double ratio = 0;  ///< When the core was solved.
   };
 
   /// A module that is not of the core.
@@ -119,8 +104,7 @@ class FollowedRobot {
   bool move(std::vector<Vec> change, double coarseness);
   double gap_energy(const std::vector<Vec>& gap) const;
   Result finish(double gap_energy);
-  const std::vector<Loaded>& most_loaded_first();
-  double load_ratio(double moved, double error);
+  double load_ratio(double error) const;
   double ratio_of(std::size_t module, std::size_t other, int direction, double known) const;
 
   static constexpr std::int32_t kAbsent = -1;
@@ -135,14 +119,12 @@ class FollowedRobot {
   std::vector<std::size_t> first_facet_;  ///< By module.
   /// By module: its place in the core, kAbsent, or less than that if it is new.
   std::vector<std::int32_t> place_;
-  std::optional<ElementSet> core_;
+  ElementSet core_;
   std::vector<Element> elements_;  ///< Of the core.
-  std::unique_ptr<model::Robot> robot_;
-  std::unique_ptr<solver::LinearSystem> system_;
+  std::unique_ptr<StuckCore> stuck_;
   std::vector<NewModule> new_;
   std::vector<Spring> springs_;   ///< Of those that were there at the last solve(), with s.
   std::size_t solved_count_ = 0;  ///< How many of them these are.
-  std::vector<Loaded> loaded_;    ///< As most_loaded_first(); empty: not yet asked for.
   std::vector<Vec> u_;            ///< By module of the target.
   std::vector<Vec> given_;     ///< By module of the core: loads beyond its own that it has taken.
   std::vector<Vec> moved_;     ///< And how far it has moved by them, z.
@@ -153,7 +135,6 @@ class FollowedRobot {
   double solution_error_ = 0;  ///< Of the last one for the core.
   double unit_ = 0;            ///< The weight of a module on a beam, in the energy norm.
   int iteration_count_ = 0;
-  FollowingWorth worth_;
   double tolerance_ = 0;  ///< What LinearSystem::solve() is asked for.
 };
 

@@ -31,39 +31,14 @@ constexpr std::size_t kPartSizeMax = 1000;
 /// Of the load, what the solution may leave unbalanced; rounding leaves about 1e-12.
 constexpr double kResidualMax = 1e-9;
 
-/// So many are known: each takes one or two megabytes.
+/// Where so many are known all are forgotten: each takes one or two megabytes.
 constexpr std::size_t kPartCountMax = 32;
-
-std::span<const std::size_t> inner_of(const SpreadPart& part) {
-  return std::span(part.modules).first(part.inner_count);
-}
 
 }  // namespace
 
-void SpreadParts::add(Part part) {
-  if (parts_.size() == kPartCountMax) {
-    remove_first();
-  }
-  for (const std::size_t module : inner_of(*part)) {
-    last_[module] = part;
-  }
-  parts_.push_back(std::move(part));
-}
-
-void SpreadParts::clear() {
-  while (!parts_.empty()) {
-    remove_first();
-  }
-}
-
-void SpreadParts::remove_first() {
-  const Part first = std::move(parts_.front());
-  parts_.pop_front();
-  for (const std::size_t module : inner_of(*first)) {
-    if (last_[module] == first) {
-      last_[module].reset();
-    }
-  }
+void LoadSpread::clear() {
+  std::ranges::fill(known_, nullptr);
+  known_count_ = 0;
 }
 
 LoadSpread::LoadSpread(const model::Robot& target, std::size_t width_min)
@@ -102,40 +77,35 @@ std::size_t LoadSpread::gather(std::span<const std::size_t> way, int reach,
     inner_count = modules.size();
     next.clear();
     for (const std::size_t module : from) {
-      for (const Direction direction : base::directions(target_->lattice())) {
-        const std::int32_t other = there.neighbour(module, base::index(direction));
-        if (other != model::Robot::kNoNeighbour && take(at(other))) {
-          next.push_back(at(other));
+      there.for_each_neighbour(module, [&](Direction /*direction*/, std::size_t other) {
+        if (take(other)) {
+          next.push_back(other);
         }
-      }
+      });
     }
   }
   return inner_count;
 }
 
 /// Those between modules that have a place, each once, and to modules that stand still.
-void LoadSpread::find_beams(Part& part, const LocalBalance& there) const {
+void LoadSpread::find_beams(SpreadPart& part, const LocalBalance& there) const {
   for (std::size_t i = 0; i < part.modules.size(); ++i) {
     const auto here = static_cast<std::int32_t>(i);
-    for (const Direction direction : base::directions(target_->lattice())) {
-      const std::int32_t other = there.neighbour(part.modules[i], base::index(direction));
-      if (other == model::Robot::kNoNeighbour) {
-        continue;
-      }
-      const std::int32_t place = place_[at(other)];
-      const std::int32_t below = below_[at(other)];
-      if (place > here || (place == kAbsent && (below != kAbsent || is_fixed(at(other))))) {
+    there.for_each_neighbour(part.modules[i], [&](Direction direction, std::size_t other) {
+      const std::int32_t place = place_[other];
+      const std::int32_t below = below_[other];
+      if (place > here || (place == kAbsent && (below != kAbsent || is_fixed(other)))) {
         part.beams.push_back({.a = here, .b = place, .direction = direction, .below = below});
       }
-    }
+    });
   }
 }
 
 /// The equations of all beams and facets; false if something hangs free.
-bool LoadSpread::factor(Part& part) const {
+bool LoadSpread::factor(SpreadPart& part) const {
   const std::vector<std::size_t>& modules = part.modules;
   BeamEquations equations(blocks_, modules.size());
-  for (const Part::Beam& beam : part.beams) {
+  for (const SpreadPart::Beam& beam : part.beams) {
     equations.add_beam(beam.a, beam.b, beam.direction);
   }
   for (std::size_t i = 0; i < modules.size(); ++i) {
@@ -157,8 +127,8 @@ void LoadSpread::forget_places(const std::vector<std::size_t>& modules) {
 }
 
 /// All modules that are there near a way; none if that is not worth while.
-SpreadParts::Part LoadSpread::make(std::span<const std::size_t> way, const LocalBalance& there) {
-  const auto part = std::make_shared<Part>();
+LoadSpread::Part LoadSpread::make(std::span<const std::size_t> way, const LocalBalance& there) {
+  const auto part = std::make_shared<SpreadPart>();
   part->inner_count = gather(way, kReach, there, part->modules);
   find_beams(*part, there);
   forget_places(part->modules);
@@ -167,12 +137,12 @@ SpreadParts::Part LoadSpread::make(std::span<const std::size_t> way, const Local
 }
 
 /// All modules that are there near a way to a part, and not of this; there may be none.
-SpreadParts::Part LoadSpread::make_cap(std::span<const std::size_t> way, const Part& below,
-                                       const LocalBalance& there) {
+LoadSpread::Part LoadSpread::make_cap(std::span<const std::size_t> way, const SpreadPart& below,
+                                      const LocalBalance& there) {
   for (std::size_t i = 0; i < below.modules.size(); ++i) {
     below_[below.modules[i]] = static_cast<std::int32_t>(i);
   }
-  const auto cap = std::make_shared<Part>();
+  const auto cap = std::make_shared<SpreadPart>();
   gather(way, kReach, there, cap->modules);
   find_beams(*cap, there);
   forget_places(cap->modules);
@@ -193,16 +163,14 @@ std::vector<std::size_t> LoadSpread::way_to_known(std::size_t module, const Loca
   std::vector<Reached> reached = {{.module = module}};
   place_[module] = 0;
   std::size_t next = 0;
-  for (; next < reached.size() && !known_.with(reached[next].module); ++next) {
+  for (; next < reached.size() && !known_[reached[next].module]; ++next) {
     const auto [here, from, steps] = reached[next];
-    for (const Direction direction : base::directions(target_->lattice())) {
-      const std::int32_t other = there.neighbour(here, base::index(direction));
-      if (steps < kDetourMax && other != model::Robot::kNoNeighbour &&
-          place_[at(other)] == kAbsent) {
-        place_[at(other)] = 0;
-        reached.push_back({.module = at(other), .from = next, .steps = steps + 1});
+    there.for_each_neighbour(here, [&, depth = steps](Direction /*direction*/, std::size_t other) {
+      if (depth < kDetourMax && place_[other] == kAbsent) {
+        place_[other] = 0;
+        reached.push_back({.module = other, .from = next, .steps = depth + 1});
       }
-    }
+    });
   }
   for (const Reached& each : reached) {
     place_[each.module] = kAbsent;
@@ -219,9 +187,9 @@ std::vector<std::size_t> LoadSpread::way_to_known(std::size_t module, const Loca
 }
 
 /// What beams and facets take from the modules if these move by u.
-void LoadSpread::subtract_forces(const Part& part, const std::vector<Vec>& u,
+void LoadSpread::subtract_forces(const SpreadPart& part, const std::vector<Vec>& u,
                                  std::vector<Vec>& rest) const {
-  for (const Part::Beam& beam : part.beams) {
+  for (const SpreadPart::Beam& beam : part.beams) {
     const Vec& own = u[at(beam.a)];
     const Vec other = beam.b < 0 ? Vec{} : u[at(beam.b)];
     base::add_times(rest[at(beam.a)], -1, beam_.end_force(beam.direction, own, other));
@@ -240,7 +208,7 @@ void LoadSpread::subtract_forces(const Part& part, const std::vector<Vec>& u,
 }
 
 /// By place; empty if that cannot be told to all digits.
-std::vector<LoadSpread::Vec> LoadSpread::displacement(const Part& part,
+std::vector<LoadSpread::Vec> LoadSpread::displacement(const SpreadPart& part,
                                                       const std::vector<Vec>& loads) const {
   std::vector<Vec> u = loads;
   part.factor.solve(u);
@@ -260,7 +228,7 @@ std::vector<LoadSpread::Vec> LoadSpread::displacement(const Part& part,
 }
 
 /// Takes those of the loads that are on a part's modules; by place.
-std::vector<LoadSpread::Vec> LoadSpread::take(std::vector<Load>& loads, const Part& part) {
+std::vector<LoadSpread::Vec> LoadSpread::take(std::vector<Load>& loads, const SpreadPart& part) {
   std::vector<Vec> taken(part.modules.size());
   std::erase_if(loads, [&](const Load& load) {
     const auto found = std::ranges::find(part.modules, load.module);
@@ -275,11 +243,21 @@ std::vector<LoadSpread::Vec> LoadSpread::take(std::vector<Load>& loads, const Pa
 
 /// What the part below bears of a cap.
 void LoadSpread::add_loads_below(const Share& cap, std::vector<Vec>& loads) const {
-  for (const Part::Beam& beam : cap.part->beams) {
+  for (const SpreadPart::Beam& beam : cap.part->beams) {
     if (beam.below >= 0) {
       const Vec force = beam_.end_force(base::opposite(beam.direction), {}, cap.u[at(beam.a)]);
       base::add_times(loads[at(beam.below)], -1, force);
     }
+  }
+}
+
+void LoadSpread::keep(const Part& part) {
+  if (known_count_ == kPartCountMax) {
+    clear();
+  }
+  ++known_count_;
+  for (std::size_t i = 0; i < part->inner_count; ++i) {
+    known_[part->modules[i]] = part;
   }
 }
 
@@ -290,13 +268,13 @@ std::vector<LoadSpread::Share> LoadSpread::spread(std::span<const std::size_t> w
   std::vector<Share> shares;
   const std::vector<std::size_t> detour = way_to_known(way.front(), there);
   const bool is_known = !detour.empty();
-  const SpreadParts::Part part = is_known ? known_.with(detour.back()) : make(way, there);
+  const Part part = is_known ? known_[detour.back()] : make(way, there);
   if (!part) {
     return {};
   }
   if (!is_known) {
-    known_.add(part);
-  } else if (const SpreadParts::Part cap = make_cap(detour, *part, there); !cap) {
+    keep(part);
+  } else if (const Part cap = make_cap(detour, *part, there); !cap) {
     return {};
   } else if (!cap->modules.empty()) {
     shares.push_back({cap, displacement(*cap, take(left, *cap))});

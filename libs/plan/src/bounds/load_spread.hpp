@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <memory>
 #include <optional>
 #include <span>
@@ -36,28 +35,6 @@ struct SpreadPart {
   solver::BlockLu factor{0, {}, 0, solver::Symmetry::kSymmetric};
 };
 
-/// The parts that came last, by the modules that are within them and not at their edge.
-class SpreadParts {
- public:
-  using Part = std::shared_ptr<const SpreadPart>;
-
-  explicit SpreadParts(std::size_t module_count) : last_(module_count) {}
-
-  /// The first is forgotten where there are too many.
-  void add(Part part);
-
-  void clear();
-
-  /// The last that has come of those that have a module within; none if there is none.
-  const Part& with(std::size_t module) const { return last_[module]; }
-
- private:
-  void remove_first();
-
-  std::deque<Part> parts_;  ///< As they came.
-  std::vector<Part> last_;  ///< By module.
-};
-
 /// Loads that go down to supports through all modules near a way, a *part*, as if these were a
 /// robot of their own: forces that balance the load in the whole robot as well, and cost a fraction
 /// of what those along a single file of modules do, which bends by whatever leads the load aside.
@@ -66,7 +43,7 @@ class SpreadParts {
 class LoadSpread {
  public:
   using Vec = base::Vec6<double>;
-  using Part = SpreadPart;
+  using Part = std::shared_ptr<const SpreadPart>;
 
   struct Load {
     std::size_t module = 0;
@@ -75,7 +52,7 @@ class LoadSpread {
 
   /// A part or a cap, and displacements of its modules, by place, whose forces take a load on.
   struct Share {
-    SpreadParts::Part part;
+    Part part;
     std::vector<Vec> u;
   };
 
@@ -93,22 +70,24 @@ class LoadSpread {
                             const LocalBalance& there);
 
   /// Forgets all parts, which are large, or have modules that are gone.
-  void clear() { known_.clear(); }
+  void clear();
 
  private:
   bool is_fixed(std::size_t module) const;
   std::vector<std::size_t> way_to_known(std::size_t module, const LocalBalance& there);
   std::size_t gather(std::span<const std::size_t> way, int reach, const LocalBalance& there,
                      std::vector<std::size_t>& modules);
-  SpreadParts::Part make(std::span<const std::size_t> way, const LocalBalance& there);
-  SpreadParts::Part make_cap(std::span<const std::size_t> way, const Part& below,
-                             const LocalBalance& there);
-  void find_beams(Part& part, const LocalBalance& there) const;
-  bool factor(Part& part) const;
+  Part make(std::span<const std::size_t> way, const LocalBalance& there);
+  Part make_cap(std::span<const std::size_t> way, const SpreadPart& below,
+                const LocalBalance& there);
+  void find_beams(SpreadPart& part, const LocalBalance& there) const;
+  bool factor(SpreadPart& part) const;
+  void keep(const Part& part);
   void forget_places(const std::vector<std::size_t>& modules);
-  static std::vector<Vec> take(std::vector<Load>& loads, const Part& part);
-  std::vector<Vec> displacement(const Part& part, const std::vector<Vec>& loads) const;
-  void subtract_forces(const Part& part, const std::vector<Vec>& u, std::vector<Vec>& rest) const;
+  static std::vector<Vec> take(std::vector<Load>& loads, const SpreadPart& part);
+  std::vector<Vec> displacement(const SpreadPart& part, const std::vector<Vec>& loads) const;
+  void subtract_forces(const SpreadPart& part, const std::vector<Vec>& u,
+                       std::vector<Vec>& rest) const;
   void add_loads_below(const Share& cap, std::vector<Vec>& loads) const;
 
   static constexpr std::int32_t kAbsent = -1;
@@ -120,7 +99,8 @@ class LoadSpread {
   std::vector<std::size_t> first_facet_;  ///< By module.
   std::vector<std::int32_t> place_;       ///< By module: in a part that is made, or kAbsent;
   std::vector<std::int32_t> below_;       ///< the same in the part that a cap stands on.
-  SpreadParts known_;
+  std::vector<Part> known_;  ///< By module: the last that has it within, not at its edge.
+  std::size_t known_count_ = 0;
 };
 
 }  // namespace holdfast::plan

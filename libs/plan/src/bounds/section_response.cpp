@@ -5,15 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
-#include "bounds/robot_growth.hpp"
 #include "dense.hpp"
 #include "equilibria/carried_force.hpp"
 #include "holdfast/base/check.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/model/connector_law.hpp"
 #include "holdfast/model/material.hpp"
-#include "holdfast/verdict/assessment.hpp"
 
 namespace holdfast::plan {
 namespace {
@@ -34,55 +33,58 @@ constexpr std::size_t kStepsBelowTop = 1;
 /// Of the solutions, of their own energy norm: a thousandth of what the core moves by.
 constexpr double kSectionTolerance = 3e-4;
 
+/// Whether no load pulls aside or twists.
+bool pulls_straight_down(const model::Robot& target) {
+  for (std::size_t i = 0; i < target.modules().size(); ++i) {
+    const Vec6<double>& load = target.loads()[i];
+    if (load[0] != 0 || load[1] != 0 || load[5] != 0) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Each but the first beside an earlier one; empty if they do not hang together.
+std::vector<std::size_t> in_order(const model::Robot& target, std::vector<std::size_t> modules) {
+  for (auto rest = modules.begin() + 1; rest != modules.end(); ++rest) {
+    const auto is_beside = [&](std::size_t module) {
+      return std::ranges::any_of(target.connected()[module], [&](std::int32_t other) {
+        return other != model::Robot::kNoNeighbour &&
+               std::find(modules.begin(), rest, at(other)) != rest;
+      });
+    };
+    const auto next = std::find_if(rest, modules.end(), is_beside);
+    if (next == modules.end()) {
+      return {};
+    }
+    std::iter_swap(rest, next);
+  }
+  return modules;
+}
+
 }  // namespace
 
-SectionResponse::SectionResponse(const model::RobotSpec& spec, const model::Robot& target)
-    : spec_(spec),
-      target_(target),
-      beam_(model::beam_section(target.material()), target.lattice()),
-      ratio_per_norm_(model::load_ratio_per_energy_norm(target)),
-      is_support_(target.modules().size()) {
-  for (const model::Facet& facet : target.facets()) {
-    is_support_[at(facet.module)] = true;
-  }
-  for (std::size_t i = 0; i < target.modules().size(); ++i) {
-    is_support_[i] = is_support_[i] || target.modules()[i].support == model::Support::kFixed;
-    places_.push_back(node_place(target, i));
-    const Vec& load = target.loads()[i];
-    is_plain_ = is_plain_ && load[0] == 0 && load[1] == 0 && load[5] == 0;
-  }
-}
-
-bool SectionResponse::find(const ElementSet& state) {
-  if (!is_plain_) {
-    return false;
-  }
-  elements_ = state.elements();
-  place_.assign(target_.modules().size(), -1);
-  for (std::size_t i = 0; i < elements_.size(); ++i) {
-    place_[at(elements_[i])] = static_cast<std::int32_t>(i);
-  }
-  return find_section();
-}
-
 /// Layer by layer from the supports, as long as each is small.
-bool SectionResponse::find_section() {
+std::vector<std::size_t> find_section(const model::Robot& target, const ElementSet& state) {
+  if (!pulls_straight_down(target)) {
+    return {};
+  }
   std::vector<std::vector<std::size_t>> layers(1);
-  std::vector<bool> is_reached(target_.modules().size());
-  for (const Element element : elements_) {
-    if (is_support_[at(element)]) {
+  std::vector<bool> is_reached(target.modules().size());
+  for (const Element element : state.elements()) {
+    if (target.modules()[at(element)].support != model::Support::kNone) {
       is_reached[at(element)] = true;
       layers.front().push_back(at(element));
     }
   }
   while (!layers.back().empty()) {
     if (layers.back().size() > kSectionMax) {
-      return false;
+      return {};
     }
     std::vector<std::size_t> next;
     for (const std::size_t module : layers.back()) {
-      for (const std::int32_t other : target_.connected()[module]) {
-        if (other != model::Robot::kNoNeighbour && place_[at(other)] >= 0 &&
+      for (const std::int32_t other : target.connected()[module]) {
+        if (other != model::Robot::kNoNeighbour && state.contains(other) &&
             !is_reached[at(other)]) {
           is_reached[at(other)] = true;
           next.push_back(at(other));
@@ -93,30 +95,26 @@ bool SectionResponse::find_section() {
   }
   layers.pop_back();
   if (layers.size() <= kStepsMin + kStepsBelowTop) {
-    return false;
+    return {};
   }
-  modules_ = layers[layers.size() - 1 - kStepsBelowTop];
-  return put_in_order();
+  return in_order(target, layers[layers.size() - 1 - kStepsBelowTop]);
 }
 
-/// Each but the first beside an earlier one. False if they do not hang together.
-bool SectionResponse::put_in_order() {
-  for (std::size_t i = 1; i < modules_.size(); ++i) {
-    const auto is_beside = [&](std::size_t module) {
-      return std::ranges::any_of(target_.connected()[module], [&](std::int32_t other) {
-        const auto end = modules_.begin() + static_cast<std::ptrdiff_t>(i);
-        return other != model::Robot::kNoNeighbour &&
-               std::find(modules_.begin(), end, at(other)) != end;
-      });
-    };
-    const auto rest = modules_.begin() + static_cast<std::ptrdiff_t>(i);
-    const auto next = std::find_if(rest, modules_.end(), is_beside);
-    if (next == modules_.end()) {
-      return false;
-    }
-    std::iter_swap(rest, next);
+SectionResponse::SectionResponse(const model::Robot& target, const ElementSet& state,
+                                 std::vector<std::size_t> section)
+    : target_(&target),
+      beam_(model::beam_section(target.material()), target.lattice()),
+      ratio_per_norm_(model::load_ratio_per_energy_norm(target)),
+      elements_(state.elements()),
+      place_(target.modules().size(), -1),
+      modules_(std::move(section)) {
+  for (std::size_t i = 0; i < elements_.size(); ++i) {
+    place_[at(elements_[i])] = static_cast<std::int32_t>(i);
   }
-  return true;
+  for (std::size_t i = 0; i < target.modules().size(); ++i) {
+    places_.push_back(node_place(target, i));
+  }
+  find_shares();
 }
 
 /// W is 1 for the force, and what a square of that area has for the moments.
@@ -151,7 +149,7 @@ void SectionResponse::find_shares() {
 }
 
 double SectionResponse::torque_weight() const {
-  const double pitch = target_.material().pitch_mm;
+  const double pitch = target_->material().pitch_mm;
   return pitch * pitch / 12;
 }
 
@@ -218,27 +216,21 @@ double SectionResponse::error(const Resultant& resultant) const {
 }
 
 /// In single precision, or where the core is too slender for it in double.
-bool SectionResponse::solve() {
-  find_shares();
-  ElementSet state(target_.modules().size());
-  for (const Element element : elements_) {
-    state.insert(element);
+std::optional<SectionResponse> SectionResponse::make(const model::RobotSpec& spec,
+                                                     const model::Robot& target,
+                                                     const ElementSet& state,
+                                                     std::vector<std::size_t> section) {
+  SectionResponse response(target, state, std::move(section));
+  for (const auto precision : {solver::Precision::kSingle, solver::Precision::kDouble}) {
+    const auto core = StuckCore::make(spec, state, precision);
+    if (core && response.solve(*core)) {
+      return response;
+    }
   }
-  const auto robot = model::Robot::create(part_of(spec_, state), 1);
-  if (!robot) {
-    return false;
-  }
-  return std::ranges::any_of(
-      std::array{solver::Precision::kSingle, solver::Precision::kDouble},
-      [&](solver::Precision precision) { return solve(robot.value(), precision); });
+  return std::nullopt;
 }
 
-bool SectionResponse::solve(const model::Robot& core, solver::Precision precision) {
-  const auto system = solver::make_linear_system(core, {.precision = precision, .thread_count = 1});
-  if (!system) {
-    return false;
-  }
-  system->set_law({});
+bool SectionResponse::solve(StuckCore& core) {
   for (std::size_t k = 0; k < 3; ++k) {
     Resultant unit{};
     unit[k] = 1;
@@ -246,22 +238,18 @@ bool SectionResponse::solve(const model::Robot& core, solver::Precision precisio
     for (std::size_t i = 0; i < modules_.size(); ++i) {
       loads[at(place_[modules_[i]])] = share_at_node(i, unit);
     }
-    system->set_loads(model::Loads(loads));
-    if (system->solve(kSectionTolerance) != solver::LinearOutcome::kSolved) {
+    auto answer = core.answer(loads, kSectionTolerance);
+    if (!answer) {
       return false;
     }
     Response& response = responses_[k];
-    response.displacement = system->displacement();
+    response.displacement = std::move(answer->displacement);
+    response.error = answer->error;
     response.moved = {};
-    double work = 0;
     for (std::size_t i = 0; i < loads.size(); ++i) {
       const Vec& u = response.displacement[i];
-      response.moved.add(core.mass(i), u[0], u[1]);
-      work += base::dot(loads[i], u);
+      response.moved.add(core.robot().mass(i), u[0], u[1]);
     }
-    response.error = system->is_exact() ? 0
-                                        : verdict::kEnergyFactor * kSectionTolerance *
-                                              std::sqrt(std::max(0.0, work));
     find_ratios(response);
   }
   return true;
@@ -271,8 +259,8 @@ bool SectionResponse::solve(const model::Robot& core, solver::Precision precisio
 void SectionResponse::find_ratios(Response& response) const {
   response.ratio = {};
   for (const Element element : elements_) {
-    for (const Direction direction : base::directions(target_.lattice())) {
-      const std::int32_t other = target_.connected()[at(element)][at(base::index(direction))];
+    for (const Direction direction : base::directions(target_->lattice())) {
+      const std::int32_t other = target_->connected()[at(element)][at(base::index(direction))];
       if (base::index(direction) % 2 != 0 || other == model::Robot::kNoNeighbour ||
           place_[at(other)] < 0) {
         continue;
@@ -280,7 +268,7 @@ void SectionResponse::find_ratios(Response& response) const {
       Vec force = beam_.middle_force(direction, response.displacement[at(place_[at(element)])],
                                      response.displacement[at(place_[at(other)])]);
       for (double& ratio : response.ratio) {
-        ratio = std::max(ratio, connection_ratio(target_, at(element), at(other),
+        ratio = std::max(ratio, connection_ratio(*target_, at(element), at(other),
                                                  base::index(direction), force));
         for (double& value : force) {
           value = -value;

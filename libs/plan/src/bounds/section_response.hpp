@@ -4,14 +4,13 @@
 
 #include <array>
 #include <cstddef>
-#include <memory>
 #include <optional>
 #include <vector>
 
+#include "equilibria/stuck_core.hpp"
 #include "holdfast/model/lattice_beam.hpp"
 #include "holdfast/model/robot.hpp"
 #include "holdfast/plan/element_set.hpp"
-#include "holdfast/solver/linear_system.hpp"
 #include "holdfast/verdict/moved_mass.hpp"
 
 namespace holdfast::plan {
@@ -33,16 +32,12 @@ class SectionResponse {
   /// A force downwards and two moments.
   using Resultant = std::array<double, 3>;
 
-  /// Keeps references to the robot, all modules of which are there in the end.
-  SectionResponse(const model::RobotSpec& spec, const model::Robot& target);
-
-  /// Takes a safe state, all of whose facets are stuck, as the core, and finds a section. False if
-  /// it is not slender.
-  bool find(const ElementSet& state);
-
-  /// Seeks the core's answers, after find(). False if they cannot be found; then nothing below may
-  /// be called.
-  bool solve();
+  /// Of a safe state, all of whose facets are stuck, as the core, above this section of it. None if
+  /// its answers cannot be found. Keeps a reference to the robot, all modules of which are there in
+  /// the end.
+  static std::optional<SectionResponse> make(const model::RobotSpec& spec,
+                                             const model::Robot& target, const ElementSet& state,
+                                             std::vector<std::size_t> section);
 
   /// The section's modules, each but the first beside an earlier one.
   const std::vector<std::size_t>& modules() const { return modules_; }
@@ -75,20 +70,17 @@ class SectionResponse {
                                     ///< and where it is negative.
   };
 
-  bool find_section();
-  bool put_in_order();
+  SectionResponse(const model::Robot& target, const ElementSet& state,
+                  std::vector<std::size_t> section);
   void find_shares();
   double torque_weight() const;
   Vec share_at_node(std::size_t place, const Resultant& resultant) const;
-  bool solve(const model::Robot& core, solver::Precision precision);
+  bool solve(StuckCore& core);
   void find_ratios(Response& response) const;
 
-  const model::RobotSpec& spec_;
-  const model::Robot& target_;
+  const model::Robot* target_;
   model::LatticeBeam<double> beam_;
   double ratio_per_norm_ = 0;
-  bool is_plain_ = true;              ///< All loads are as resultant() asks for.
-  std::vector<bool> is_support_;      ///< By module.
   std::vector<Element> elements_;     ///< Of the core.
   std::vector<std::int32_t> place_;   ///< By module: in elements_, or -1.
   std::vector<std::size_t> modules_;  ///< Of the section.
@@ -97,5 +89,9 @@ class SectionResponse {
   std::array<double, 9> shares_{};    ///< (sum_k B_k W B_k')^-1, by rows.
   std::array<Response, 3> responses_;
 };
+
+/// A section of a robot's state, in the order of SectionResponse::modules(); empty if the state is
+/// not slender, or its loads are not as SectionResponse::resultant() asks for.
+std::vector<std::size_t> find_section(const model::Robot& target, const ElementSet& state);
 
 }  // namespace holdfast::plan

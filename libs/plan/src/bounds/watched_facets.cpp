@@ -12,104 +12,60 @@ namespace holdfast::plan {
 using base::at;
 using base::Direction;
 
-namespace {
-
-void add(Triple& sum, const Triple& more) {
-  for (std::size_t i = 0; i < sum.size(); ++i) {
-    sum[i] += more[i];
-  }
-}
-
-}  // namespace
-
-WatchedFacets::WatchedFacets(const model::Robot& target)
+WatchedFacets::WatchedFacets(const model::Robot& target, const Adjoints& adjoints)
     : target_(&target),
       beam_(model::beam_section(target.material()), target.lattice()),
-      there_(target) {}
-
-void WatchedFacets::take(const Adjoints& adjoints) {
-  watched_.clear();
+      there_(target) {
   for (const auto& adjoint : adjoints) {
-    watched_.push_back({.adjoint = adjoint});
+    adjoints_.emplace(adjoint->facet(), adjoint);
   }
-}
-
-bool WatchedFacets::has_asked_for(std::size_t facet) const {
-  return std::ranges::any_of(watched_, [&](const Watched& watched) {
-    return watched.is_asked_for && watched.adjoint->facet() == facet;
-  });
 }
 
 void WatchedFacets::begin(const std::vector<Element>& elements, const std::vector<Vec>& u) {
-  elements_ = elements;
-  u_ = watched_.empty() ? std::vector<Vec>() : u;
+  if (!adjoints_.empty()) {
+    elements_ = elements;
+    u_ = u;
+  }
   rest_.clear();
   attached_.clear();
-  for (Watched& watched : watched_) {
-    watched.has_begun = false;
-  }
-  improve(0);
+  begun_.clear();
+  moved_ = 0;
 }
 
-void WatchedFacets::improve(double moved) {
-  moved_ = moved;
-  settled_count_ = attached_.size();
-  for (Watched& watched : watched_) {
-    watched.is_settled = false;
+const WatchedFacets::Begun& WatchedFacets::begun(const Adjoint& adjoint) {
+  const auto [found, is_first] = begun_.try_emplace(adjoint.facet());
+  if (is_first) {
+    found->second.count = adjoint.count_in(elements_);
+    if (found->second.count) {
+      find_rest();
+      found->second.force = adjoint.force(u_, rest_, *found->second.count);
+    }
   }
-}
-
-void WatchedFacets::begin(Watched& watched) {
-  const auto count = watched.adjoint->count_in(elements_);
-  watched.has_begun = true;
-  watched.is_void = !count;
-  watched.begin_count = count.value_or(0);
-  watched.attached = 0;
-  if (count) {
-    find_rest();
-    watched.first = watched.adjoint->force(u_, rest_, *count);
-  }
-}
-
-/// Goes on to so many attached modules; false if others come next on the adjoint's way.
-bool WatchedFacets::goes_on(Watched& watched, std::size_t attached) const {
-  for (; !watched.is_void && watched.attached < attached; ++watched.attached) {
-    watched.is_void = !watched.adjoint->is_next(watched.begin_count + watched.attached,
-                                                attached_[watched.attached]);
-  }
-  return !watched.is_void;
+  return found->second;
 }
 
 std::optional<WatchedFacets::Answer> WatchedFacets::find(std::size_t facet,
                                                          const std::vector<Vec>& u) {
-  const auto watched = std::ranges::find_if(
-      watched_, [&](const Watched& known) { return known.adjoint->facet() == facet; });
-  if (watched == watched_.end()) {
+  const auto watched = adjoints_.find(facet);
+  if (watched == adjoints_.end()) {
     return std::nullopt;
   }
-  watched->is_asked_for = true;
-  if (!watched->has_begun) {
-    begin(*watched);
-  }
-  const auto share = [&](std::size_t first, std::size_t end) {
-    return watched->adjoint->share(u, watched->begin_count + first, watched->begin_count + end);
-  };
-  if (!watched->is_settled && goes_on(*watched, settled_count_)) {
-    watched->force = watched->first;
-    add(watched->force, share(0, settled_count_));
-    watched->is_settled = true;
-  }
-  while (watched->attached < attached_.size() && goes_on(*watched, watched->attached + 1)) {
-    add(watched->force, share(watched->attached - 1, watched->attached));
-  }
-  if (watched->is_void) {
+  asked_for_.insert(facet);
+  const Adjoint& adjoint = *watched->second;
+  const Begun& first = begun(adjoint);
+  if (!first.count || !adjoint.are_next(*first.count, attached_)) {
     return std::nullopt;
   }
-  return Answer{.adjoint = watched->adjoint.get(),
-                .count = watched->begin_count + watched->attached,
-                .still = watched->begin_count,
+  const std::size_t count = *first.count + attached_.size();
+  Answer answer{.adjoint = &adjoint,
+                .count = count,
+                .still = *first.count,
                 .moved = moved_,
-                .force = watched->force};
+                .force = adjoint.share(u, *first.count, count)};
+  for (std::size_t i = 0; i < answer.force.size(); ++i) {
+    answer.force[i] += first.force[i];
+  }
+  return answer;
 }
 
 /// f - K u when the robot was solved, unless it is known.
@@ -122,12 +78,11 @@ void WatchedFacets::find_rest() {
   for (const Element element : elements_) {
     const std::size_t module = at(element);
     base::add_to(rest_[module], target_->loads()[module]);
-    for (const Direction direction : base::directions(target_->lattice())) {
-      const std::int32_t other = there_.neighbour(module, base::index(direction));
-      if (base::index(direction) % 2 == 0 && other != model::Robot::kNoNeighbour) {
-        pull(module, direction, at(other));
+    there_.for_each_neighbour(module, [&](Direction direction, std::size_t other) {
+      if (base::index(direction) % 2 == 0) {
+        pull(module, direction, other);
       }
-    }
+    });
   }
   for (const model::Facet& facet : target_->facets()) {
     const std::size_t module = at(facet.module);

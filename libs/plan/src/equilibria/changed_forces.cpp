@@ -29,10 +29,8 @@ ChangedForces::ChangedForces(const model::Robot& target)
       beam_(model::beam_section(target.material()), target.lattice()),
       stiffness_(middle_stiffness(beam_)),
       half_(base::directions(target.lattice()).size() / 2),
-      beams_(half_ * target.modules().size()),
-      facets_(target.facets().size()),
-      is_touched_(beams_.size()),
-      is_facet_touched_(facets_.size()) {
+      place_of_beam_(half_ * target.modules().size(), kNone),
+      facets_(target.facets().size()) {
   for (std::size_t module = 0; module < target.modules().size(); ++module) {
     places_.push_back(node_place(target, module));
   }
@@ -60,33 +58,27 @@ ChangedForces::Vec ChangedForces::along(std::size_t module, int direction, const
 }
 
 void ChangedForces::clear() {
-  for (const std::size_t beam : touched_) {
-    beams_[beam] = {};
-    is_touched_[beam] = 0;
+  for (const Spring& beam : beams_) {
+    place_of_beam_[beam.index] = kNone;
   }
-  for (const std::size_t facet : touched_facets_) {
-    facets_[facet] = {};
-    is_facet_touched_[facet] = 0;
-  }
-  touched_.clear();
-  touched_facets_.clear();
+  beams_.clear();
+  std::ranges::fill(facets_, Spring{});
   energy_ = 0;
   load_ratio_ = 0;
 }
 
-void ChangedForces::touch_facet(std::size_t facet) {
-  if (is_facet_touched_[facet] == 0) {
-    is_facet_touched_[facet] = 1;
-    touched_facets_.push_back(facet);
+ChangedForces::Spring& ChangedForces::beam_from(std::size_t module, int direction) {
+  const std::size_t first =
+      direction % 2 == 0 ? module : at(target_->connected()[module][at(direction)]);
+  const std::size_t index = first * half_ + at(direction) / 2;
+  if (place_of_beam_[index] == kNone) {
+    place_of_beam_[index] = static_cast<std::int32_t>(beams_.size());
+    beams_.push_back({.index = index});
   }
+  return beams_[at(place_of_beam_[index])];
 }
 
-void ChangedForces::weigh(std::size_t index) {
-  Spring& beam = beams_[index];
-  if (is_touched_[index] == 0) {
-    is_touched_[index] = 1;
-    touched_.push_back(index);
-  }
+void ChangedForces::weigh(Spring& beam) {
   Vec lack = beam.change;
   Vec sum = beam.change;
   for (std::size_t i = 0; i < 6; ++i) {
@@ -96,8 +88,8 @@ void ChangedForces::weigh(std::size_t index) {
   const double energy = energy_of(lack);
   energy_ += energy - beam.energy;
   beam.energy = energy;
-  const std::size_t module = index / half_;
-  const int direction = static_cast<int>(2 * (index % half_));
+  const std::size_t module = beam.index / half_;
+  const int direction = static_cast<int>(2 * (beam.index % half_));
   const std::size_t other = at(target_->connected()[module][at(direction)]);
   load_ratio_ =
       std::max(load_ratio_, connection_ratio(*target_, module, other, direction, sum) / 2);
@@ -106,21 +98,21 @@ void ChangedForces::weigh(std::size_t index) {
 void ChangedForces::weigh_all() {
   energy_ = 0;
   load_ratio_ = 0;
-  for (const std::size_t beam : touched_) {
-    beams_[beam].energy = 0;
+  for (Spring& beam : beams_) {
+    beam.energy = 0;
     weigh(beam);
   }
 }
 
 void ChangedForces::hand_on(std::size_t module, int direction, const Vec& load) {
-  const std::size_t beam = beam_from(module, direction);
-  base::add_to(beams_[beam].change, along(module, direction, load));
+  Spring& beam = beam_from(module, direction);
+  base::add_to(beam.change, along(module, direction, load));
   weigh(beam);
 }
 
 void ChangedForces::hand_on_only(std::size_t module, int direction, const Vec& load) {
-  const std::size_t beam = beam_from(module, direction);
-  beams_[beam].change = along(module, direction, load);
+  Spring& beam = beam_from(module, direction);
+  beam.change = along(module, direction, load);
   weigh(beam);
 }
 
@@ -134,15 +126,15 @@ ChangedForces::Vec ChangedForces::force_between(int direction, const Vec& u_modu
 
 void ChangedForces::bear(std::size_t module, int direction, const Vec& u_module,
                          const Vec& u_other) {
-  const std::size_t beam = beam_from(module, direction);
-  base::add_to(beams_[beam].change, force_between(direction, u_module, u_other));
+  Spring& beam = beam_from(module, direction);
+  base::add_to(beam.change, force_between(direction, u_module, u_other));
   weigh(beam);
 }
 
 void ChangedForces::open_gap(std::size_t module, int direction, const Vec& u_module,
                              const Vec& u_other) {
-  const std::size_t beam = beam_from(module, direction);
-  beams_[beam].gap = force_between(direction, u_module, u_other);
+  Spring& beam = beam_from(module, direction);
+  beam.gap = force_between(direction, u_module, u_other);
   weigh(beam);
 }
 
@@ -151,9 +143,6 @@ void ChangedForces::weigh_facet(std::size_t index, const Vec& moved) {
   const double energy = energy_of(base::sum_of<double>(facet.change, -1, moved));
   energy_ += energy - facet.energy;
   facet.energy = energy;
-  if (energy != 0) {
-    touch_facet(index);
-  }
 }
 
 }  // namespace holdfast::plan

@@ -54,10 +54,7 @@ class ChangedForces {
   void bear(std::size_t module, int direction, const Vec& u_module, const Vec& u_other);
 
   /// A facet bears one more force; not weighed yet.
-  void bear(std::size_t facet, const Vec& force) {
-    base::add_to(facets_[facet].change, force);
-    touch_facet(facet);
-  }
+  void bear(std::size_t facet, const Vec& force) { base::add_to(facets_[facet].change, force); }
 
   /// What h w of a beam is now, if it was nothing.
   void open_gap(std::size_t module, int direction, const Vec& u_module, const Vec& u_other);
@@ -71,35 +68,29 @@ class ChangedForces {
   Vec facet_change(std::size_t facet) const { return facets_[facet].change; }
 
  private:
+  static constexpr std::int32_t kNone = -1;
+
   struct Spring {
-    Vec change{};  ///< Of s.
-    Vec gap{};     ///< Of h w.
+    std::size_t index = 0;  ///< Of a beam: by module, then every other direction from it.
+    Vec change{};           ///< Of s.
+    Vec gap{};              ///< Of h w.
     double energy = 0;
   };
 
   /// Beams are known by the end from which they have an even direction.
-  std::size_t beam_from(std::size_t module, int direction) const {
-    const std::size_t first =
-        direction % 2 == 0 ? module : base::at(target_->connected()[module][base::at(direction)]);
-    return first * half_ + base::at(direction) / 2;
-  }
-
-  void touch_facet(std::size_t facet);
-  void weigh(std::size_t beam);
+  Spring& beam_from(std::size_t module, int direction);
+  void weigh(Spring& beam);
   Vec along(std::size_t module, int direction, const Vec& load) const;
   Vec force_between(int direction, const Vec& u_module, const Vec& u_other) const;
 
   const model::Robot* target_;
   model::LatticeBeam<double> beam_;
   Vec stiffness_{};
-  std::size_t half_ = 0;       ///< Of the number of directions.
-  std::vector<Vec> places_;    ///< By module.
-  std::vector<Spring> beams_;  ///< By module, then every other direction from it.
+  std::size_t half_ = 0;                     ///< Of the number of directions.
+  std::vector<Vec> places_;                  ///< By module.
+  std::vector<std::int32_t> place_of_beam_;  ///< In beams_, by index; or kNone.
+  std::vector<Spring> beams_;                ///< Those that have changed.
   std::vector<Spring> facets_;
-  std::vector<std::uint8_t> is_touched_;  ///< By beam.
-  std::vector<std::uint8_t> is_facet_touched_;
-  std::vector<std::size_t> touched_;  ///< Beams.
-  std::vector<std::size_t> touched_facets_;
   double energy_ = 0;
   double load_ratio_ = 0;
 };

@@ -57,7 +57,7 @@ std::optional<ContactState> certain_state(const solver::FacetLaw<double>& law,
 class ChangedRobot::System {
  public:
   System(const SolvedCore& core, const Change& change, const NewModules& new_modules)
-      : core_(core), known_(change.loads) {
+      : core_(core), find_answers_(change.find_answers), known_(change.loads) {
     if (new_modules.is_load()) {
       if (!change.links.empty()) {
         known_.push_back({.module = change.links.front().host, .load = new_modules.load(0)});
@@ -188,16 +188,20 @@ class ChangedRobot::System {
   }
 
   bool is_known() const {
+    if (!find_answers_) {
+      return true;
+    }
     std::vector<std::size_t> modules = places_;
     for (const PointLoad& load : known_) {
       modules.push_back(load.module);
     }
     std::ranges::sort(modules);
     modules.erase(std::unique(modules.begin(), modules.end()), modules.end());
-    return core_.knows(modules);
+    return find_answers_(modules);
   }
 
   const SolvedCore& core_;
+  const std::function<bool(std::span<const std::size_t>)>& find_answers_;
   std::vector<PointLoad> known_;
   std::vector<std::size_t> places_;
   std::vector<Unknown> unknowns_;
@@ -211,8 +215,10 @@ std::optional<Changed> ChangedRobot::solve(const ContactStates& states) const {
   for (std::size_t i = 0; i < own.size() && !states.empty(); ++i) {
     own[i].state = states[core_count + i];
   }
-  Changed changed{.states = states, .new_modules = change_.new_modules(own)};
-  System system(core_, change_, *changed.new_modules);
+  Changed changed{
+      .states = states,
+      .new_modules = NewModules(core_, change_.links, change_.beams, change_.new_loads, own)};
+  System system(core_, change_, changed.new_modules);
   for (std::size_t i = 0; i < core_count && !states.empty(); ++i) {
     if (states[i] != core_.facets()[i].state) {
       system.add_facet(core_.facets()[i], states[i]);
@@ -250,7 +256,7 @@ std::vector<Vec6<double>> ChangedRobot::trial_forces(const Changed& changed) con
   for (const Link& link : change_.links) {
     hosts.push_back(displacement(link.host, changed.loads));
   }
-  const std::vector<Vec6<double>> moved = changed.new_modules->displacements(hosts);
+  const std::vector<Vec6<double>> moved = changed.new_modules.displacements(hosts);
   for (const FacetState& facet : change_.facets) {
     trials.push_back(core_.law().trial_force(facet, moved[facet.module]));
   }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
@@ -54,13 +53,15 @@ inline constexpr double kForceShare = 1e-6;
 
 /// What a robot has besides its core.
 struct Change {
-  std::vector<PointLoad> loads = {};  ///< On modules of the core.
-  std::span<const Link> links = {};   ///< From these to new modules.
+  std::vector<PointLoad> loads = {};               ///< On modules of the core.
+  std::vector<base::Vec6<double>> new_loads = {};  ///< By new module.
+  std::vector<Link> links = {};                    ///< From modules of the core to new ones.
+  std::vector<model::Connection> beams = {};       ///< Between new modules.
   /// Facets of new modules, all of them stuck; `module` is a place among the new ones.
   std::vector<solver::FacetState> facets = {};
-  /// The new modules with these facets in other states.
-  std::function<std::shared_ptr<const NewModules>(std::span<const solver::FacetState>)>
-      new_modules = {};
+  /// Sees to it that the core knows its answers to loads on these of its modules; false if it
+  /// cannot. Empty: it knows them.
+  std::function<bool(std::span<const std::size_t>)> find_answers = {};
 };
 
 /// A changed robot in equilibrium, its facets in given states.
@@ -69,7 +70,7 @@ struct Changed {
   /// The core moves by its own loads and these as it does in the changed robot.
   std::vector<PointLoad> loads = {};
   std::vector<base::Vec6<double>> trials = {};  ///< By facet, the trial force.
-  std::shared_ptr<const NewModules> new_modules = {};
+  NewModules new_modules = {};
   std::size_t yielding_count = 0;  ///< Components of facets' forces that the core's have not.
 };
 

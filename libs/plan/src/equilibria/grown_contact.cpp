@@ -18,14 +18,6 @@ using solver::FacetState;
 /// What rounding may do to a facet's force, of all loads together.
 constexpr double kForceRounding = 1e-12;
 
-std::vector<base::Direction> directions_of(const Site& site) {
-  std::vector<base::Direction> directions;
-  for (const Link& link : site.links) {
-    directions.push_back(link.direction);
-  }
-  return directions;
-}
-
 /// Whether the robot is on a flat floor, or would be with a module on one.
 bool stands_flat(const model::Robot& robot) {
   const auto& [x, y, z] = robot.gravity();
@@ -36,7 +28,7 @@ bool stands_flat(const model::Robot& robot) {
 }  // namespace
 
 GrownContact::GrownContact(const model::Robot& robot, const model::Touch& floor,
-                           const SolvedCore& core, bool is_bonded, std::span<const Site> sites)
+                           const SolvedCore& core, bool is_bonded)
     : robot_(robot),
       core_(core),
       is_bonded_(is_bonded),
@@ -52,40 +44,24 @@ GrownContact::GrownContact(const model::Robot& robot, const model::Touch& floor,
     load_[k] = mass * robot.gravity()[k];
     scale_n_ += total * std::abs(robot.gravity()[k]);
   }
-  const auto make_node = [&](const Site& site, int code, std::span<const FacetState> facets) {
-    auto& node = nodes_[{directions_of(site), code}];
-    if (!node) {
-      node = std::make_shared<NewModules>(core, site.links, std::span<const model::Connection>(),
-                                          std::span(&load_, 1), facets);
-    }
-  };
-  for (const Site& site : sites) {
-    for (int code = 0; site.is_on_floor && code < ContactState::kCodeCount; ++code) {
-      const FacetState facet = own_facet(ContactState::from_code(code));
-      make_node(site, code, std::span(&facet, 1));
-    }
-    if (!site.is_on_floor) {
-      make_node(site, -1, {});
-    }
-  }
-  nodes_[{{}, -1}] = std::make_shared<NewModules>();
 }
 
-FacetState GrownContact::own_facet(const ContactState& state) const {
+/// Of a new module, stuck.
+FacetState GrownContact::own_facet() const {
   return {.module = 0,
           .direction = base::down(robot_.lattice()),
           .is_bonded = floor_.hold == model::Hold::kBonded,
-          .state = state};
+          .state = {}};
 }
 
 Change GrownContact::change_at(const Site& site) const {
   Change change{.links = site.links};
-  if (site.is_on_floor) {
-    change.facets.push_back(own_facet({}));
+  if (!site.links.empty()) {
+    change.new_loads.push_back(load_);
   }
-  change.new_modules = [this, directions = directions_of(site)](std::span<const FacetState> own) {
-    return nodes_.at({directions, own.empty() ? -1 : own.front().state.code()});
-  };
+  if (site.is_on_floor) {
+    change.facets.push_back(own_facet());
+  }
   return change;
 }
 
@@ -142,7 +118,7 @@ std::optional<Grown> GrownContact::stuck(const Site& site) const {
   if (!found) {
     return std::nullopt;
   }
-  return Grown{.loads = std::move(found->loads), .node = std::move(found->new_modules)};
+  return Grown{.loads = std::move(found->loads), .new_modules = std::move(found->new_modules)};
 }
 
 /// Whether a facet is so far from tilting and lifting that certain_state() says that it is stuck.
@@ -168,7 +144,7 @@ void GrownContact::look_if_stuck(const FacetState& facet, std::optional<double> 
 
 void GrownContact::look_at_own(const Site& site, const Vec& new_module, Footing& footing) const {
   if (!is_bonded_ && site.is_on_floor) {
-    const FacetState facet = own_facet({});
+    const FacetState facet = own_facet();
     look_if_stuck(facet, floor_.friction, core_.law().trial_force(facet, new_module), footing);
   }
 }
@@ -183,7 +159,7 @@ std::optional<Grown> GrownContact::settle(const Site& site, const SolvedCore& co
   Footing footing = footing_of(site, robot, *found);
   footing.is_certain = footing.is_certain && !robot.may_have_others(*found);
   return Grown{.loads = std::move(found->loads),
-               .node = std::move(found->new_modules),
+               .new_modules = std::move(found->new_modules),
                .yielding_count = found->yielding_count,
                .footing = footing,
                .is_settled = true};

@@ -3,8 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <map>
-#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
@@ -25,7 +23,7 @@ struct Footing {
 /// A grown robot in equilibrium with its contact states.
 struct Grown {
   std::vector<PointLoad> loads = {};  ///< As of Changed.
-  std::shared_ptr<const NewModules> node = {};
+  NewModules new_modules = {};
   std::size_t yielding_count = 0;  ///< As of Changed.
   Footing footing = {};
   bool is_settled = false;  ///< By the path; else all facets were taken to be stuck.
@@ -37,9 +35,9 @@ class GrownContact {
  public:
   using Vec = base::Vec6<double>;
 
-  /// For new modules at these sites. `core` is the robot, all its facets stuck.
+  /// `core` is the robot, all its facets stuck.
   GrownContact(const model::Robot& robot, const model::Touch& floor, const SolvedCore& core,
-               bool is_bonded, std::span<const Site> sites);
+               bool is_bonded);
 
   /// The loads while all facets are stuck.
   std::optional<Grown> stuck(const Site& site) const;
@@ -64,7 +62,7 @@ class GrownContact {
                Footing& footing) const;
   bool is_on_flat_floor(const Site& site) const;
   Footing footing_of(const Site& site, const ChangedRobot& grown, const Changed& settled) const;
-  solver::FacetState own_facet(const mechanics::ContactState& state) const;
+  solver::FacetState own_facet() const;
   Change change_at(const Site& site) const;
 
   const model::Robot& robot_;
@@ -75,8 +73,6 @@ class GrownContact {
   model::Touch floor_;
   Vec load_{};          ///< Of the new module.
   double scale_n_ = 0;  ///< All loads together.
-  /// By directions of the links and the code of the own facet's state, -1 without one.
-  std::map<std::pair<std::vector<base::Direction>, int>, std::shared_ptr<const NewModules>> nodes_;
 };
 
 template <class Displacement>

@@ -32,11 +32,9 @@ void LocalBalance::assign(const std::vector<Element>& elements) {
 const LocalBalance::Stiffness& LocalBalance::stiffness(std::size_t module) {
   constexpr auto kFacets = static_cast<std::size_t>(base::Lattice::kDirectionCountMax);
   std::uint32_t key = 0;
-  for (const Direction direction : base::directions(target_->lattice())) {
-    if (neighbour(module, base::index(direction)) != model::Robot::kNoNeighbour) {
-      key |= std::uint32_t{1} << at(base::index(direction));
-    }
-  }
+  for_each_neighbour(module, [&](Direction direction, std::size_t /*other*/) {
+    key |= std::uint32_t{1} << at(base::index(direction));
+  });
   for (std::size_t i = first_facet_[module]; i < first_facet_[module + 1]; ++i) {
     key |= std::uint32_t{1} << (kFacets + at(base::index(target_->facets()[i].direction)));
   }
@@ -57,22 +55,16 @@ const LocalBalance::Stiffness& LocalBalance::stiffness(std::size_t module) {
 }
 
 void LocalBalance::add_beams(std::size_t module, std::vector<Beam>& beams) const {
-  for (const Direction direction : base::directions(target_->lattice())) {
-    const std::int32_t other = neighbour(module, base::index(direction));
-    if (other != model::Robot::kNoNeighbour) {
-      beams.push_back({.block_12 = &blocks_.block_12(direction), .other = at(other)});
-    }
-  }
+  for_each_neighbour(module, [&](Direction direction, std::size_t other) {
+    beams.push_back({.block_12 = &blocks_.block_12(direction), .other = other});
+  });
 }
 
 LocalBalance::Vec LocalBalance::pull(std::size_t module, const std::vector<Vec>& u) const {
   Vec rest = target_->loads()[module];
-  for (const Direction direction : base::directions(target_->lattice())) {
-    const std::int32_t other = neighbour(module, base::index(direction));
-    if (other != model::Robot::kNoNeighbour) {
-      base::add_times(rest, -1, block_product(blocks_.block_12(direction), u[at(other)]));
-    }
-  }
+  for_each_neighbour(module, [&](Direction direction, std::size_t other) {
+    base::add_times(rest, -1, block_product(blocks_.block_12(direction), u[other]));
+  });
   return rest;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "beam_blocks.hpp"
+#include "holdfast/base/lattice.hpp"
 #include "holdfast/model/robot.hpp"
 #include "holdfast/plan/element_set.hpp"
 
@@ -48,6 +49,17 @@ class LocalBalance {
     return other != model::Robot::kNoNeighbour && is_there(base::at(other))
                ? other
                : model::Robot::kNoNeighbour;
+  }
+
+  /// each(direction, other) for every module that is there beside one.
+  template <class Each>
+  void for_each_neighbour(std::size_t module, const Each& each) const {
+    for (const base::Direction direction : base::directions(target_->lattice())) {
+      const std::int32_t other = neighbour(module, base::index(direction));
+      if (other != model::Robot::kNoNeighbour) {
+        each(direction, base::at(other));
+      }
+    }
   }
 
   /// Of a module that touches something. Stays where it is.

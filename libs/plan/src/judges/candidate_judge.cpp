@@ -25,9 +25,6 @@ using verdict::Verdict;
 /// multigrid's check of it.
 constexpr std::size_t kJudgedFillMax = 100;
 
-/// Rounding beyond this share of a load ratio is left to the checks, which refine.
-constexpr double kErrorShareMax = 1e-9;
-
 /// What displacements for loads on all facets may take.
 constexpr std::size_t kFacetBytesMax = std::size_t{1} << 29U;
 
@@ -118,12 +115,11 @@ bool CandidateJudge::prepare(const RobotSymmetry& symmetry) {
   if (!influence_) {
     return false;
   }
-  ratios_.emplace(robot_, *influence_);
-  if (!(ratios_->error_share() <= kErrorShareMax)) {
+  if (!(rounding_share(robot_, *influence_) <= kRoundingShareMax)) {
     return false;
   }
   core_.emplace(*influence_);
-  contact_.emplace(robot_, spec_.floor, *core_, options_.equilibrium.is_bonded, sites_);
+  contact_.emplace(robot_, spec_.floor, *core_, options_.equilibrium.is_bonded);
   begins_stuck_ = is_stuck();
   find_inverse();
   find_sway();
@@ -217,10 +213,15 @@ bool CandidateJudge::has_host_for(const Site& site) const {
          });
 }
 
-const InfluenceCore* CandidateJudge::core_with_columns() const {
+const SolvedCore* CandidateJudge::core_with_columns() const {
   std::call_once(columns_made_, [&] {
-    auto core = std::make_unique<InfluenceCore>(*influence_);
-    if (core->find_columns(std::min(kFacetBytesMax, options_.equilibrium.memory_bytes_max))) {
+    auto core = std::make_unique<SolvedCore>(*influence_);
+    std::vector<std::size_t> modules;
+    for (const solver::FacetState& facet : core->facets()) {
+      modules.push_back(facet.module);
+    }
+    if (core->find_columns(modules,
+                           std::min(kFacetBytesMax, options_.equilibrium.memory_bytes_max))) {
       core_with_columns_ = std::move(core);
     }
   });
@@ -228,7 +229,7 @@ const InfluenceCore* CandidateJudge::core_with_columns() const {
 }
 
 std::optional<Grown> CandidateJudge::settled(const Site& site) const {
-  const InfluenceCore* const core = core_with_columns();
+  const SolvedCore* const core = core_with_columns();
   auto grown = core != nullptr ? contact_->settle(site, *core) : std::nullopt;
   return grown && grown->footing.is_certain ? std::move(grown) : std::nullopt;
 }
@@ -296,11 +297,10 @@ void CandidateJudge::judge_together(std::span<Waiting> lanes, std::vector<Waitin
     }
   }
   influence_->solve(more);
-  const LaneRatios::PerLane largest = ratios_->largest(more);
   for (std::size_t lane = 0; lane < lanes.size(); ++lane) {
     Waiting& one = lanes[lane];
     const auto hosts = host_displacements(one, lane, more);
-    const Vec6<double> own = one.grown.node->displacements(hosts).front();
+    const Vec6<double> own = one.grown.new_modules.displacements(hosts).front();
     if (!one.grown.is_settled) {
       one.grown.footing = contact_->footing_if_stuck(
           one.site, own, [&](std::size_t module) { return displacement(module, lane, more); });
@@ -312,7 +312,7 @@ void CandidateJudge::judge_together(std::span<Waiting> lanes, std::vector<Waitin
         continue;
       }
     }
-    conclude(one, std::max(largest[lane], new_ratio(one.site, hosts, own)), own);
+    conclude(one, std::max(old_ratio(lane, more), new_ratio(one.site, hosts, own)), own);
   }
 }
 
@@ -350,6 +350,18 @@ std::vector<Vec6<double>> CandidateJudge::host_displacements(
     hosts.push_back(displacement(link.host, lane, more));
   }
   return hosts;
+}
+
+/// The largest load ratio of the robot's own connections.
+double CandidateJudge::old_ratio(std::size_t lane, std::span<const LaneBlock> more) const {
+  double largest = -std::numeric_limits<double>::infinity();
+  for (const model::Connection& pair : robot_.connections()) {
+    const Vec6<double> force =
+        influence_->beam().middle_force(pair.direction, displacement(base::at(pair.a), lane, more),
+                                        displacement(base::at(pair.b), lane, more));
+    largest = std::max(largest, model::load_ratio(robot_.connector(pair), force).ratio);
+  }
+  return largest;
 }
 
 /// The largest load ratio of the new connections, where the new module moves by `own`.

@@ -10,8 +10,6 @@
 #include <vector>
 
 #include "equilibria/grown_contact.hpp"
-#include "equilibria/influence_core.hpp"
-#include "equilibria/lane_ratios.hpp"
 #include "equilibria/site.hpp"
 #include "holdfast/plan/candidates.hpp"
 #include "holdfast/solver/influence.hpp"
@@ -48,7 +46,7 @@ class CandidateJudge {
   bool is_stuck() const;
   bool pays() const;
   bool has_host_for(const Site& site) const;
-  const InfluenceCore* core_with_columns() const;
+  const SolvedCore* core_with_columns() const;
 
   std::optional<Waiting> look_at(const base::Cell& cell, std::optional<Candidate>& judged) const;
   std::optional<Grown> settled(const Site& site) const;
@@ -58,6 +56,7 @@ class CandidateJudge {
   void find_sway();
   bool stays_over_polygon(const Waiting& waiting, const base::Vec6<double>& own) const;
 
+  double old_ratio(std::size_t lane, std::span<const solver::LaneBlock> more) const;
   double new_ratio(const Site& site, std::span<const base::Vec6<double>> hosts,
                    const base::Vec6<double>& own) const;
   std::vector<base::Vec6<double>> host_displacements(const Waiting& waiting, std::size_t lane,
@@ -74,11 +73,10 @@ class CandidateJudge {
   bool begins_stuck_ = true;  ///< All facets of the robot without candidates are stuck.
   std::vector<Site> sites_;   ///< Where a module can be, by ascending cell.
   std::unique_ptr<solver::Influence> influence_;
-  std::optional<InfluenceCore> core_;
+  std::optional<SolvedCore> core_;
   std::optional<GrownContact> contact_;
-  std::optional<LaneRatios> ratios_;
   mutable std::once_flag columns_made_;
-  mutable std::unique_ptr<InfluenceCore> core_with_columns_;  ///< None if they take too much.
+  mutable std::unique_ptr<SolvedCore> core_with_columns_;  ///< None if they take too much.
 
   // Without the new module, where the polygon decides; else empty.
   verdict::MovedMass moved_alone_;

@@ -8,6 +8,7 @@
 #include <unordered_set>
 
 #include "bounds/robot_growth.hpp"
+#include "part_of.hpp"
 #include "patience.hpp"
 
 namespace holdfast::plan {
