@@ -362,8 +362,8 @@ std::vector<std::vector<std::uint8_t>> configuration_pages(const model::Robot& r
                                                            const EmulationOptions& options) {
   std::vector<std::vector<std::uint8_t>> pages;
   for (const module::Configuration& configuration : configurations(robot, options)) {
-    pages.emplace_back(sizeof(configuration));
-    std::memcpy(pages.back().data(), &configuration, sizeof(configuration));
+    pages.emplace_back(module::kConfigurationBytes);
+    std::memcpy(pages.back().data(), &configuration, pages.back().size());
   }
   return pages;
 }

@@ -115,10 +115,16 @@ void Module::take_plan(std::span<const std::uint8_t> payload) {
     return;
   }
   agent::wire::Reader in(payload, 0);
-  event_.cell.x = in.i32();
-  event_.cell.y = in.i32();
-  event_.cell.z = in.i32();
-  step(is_withdrawal ? EventKind::kWithdraw : EventKind::kPlan);
+  base::Cell cell;
+  cell.x = in.i32();
+  cell.y = in.i32();
+  cell.z = in.i32();
+  tell(is_withdrawal ? EventKind::kWithdraw : EventKind::kPlan, cell);
+}
+
+void Module::tell(EventKind kind, const base::Cell& cell) {
+  event_.cell = cell;
+  step(kind);
 }
 
 void Module::watch_neighbours() {
