@@ -21,7 +21,9 @@ void start_board(void) {
   }
 }
 
-extern uint32_t data_load, data_begin, data_end, zero_begin, zero_end, stack_end; /* stm32f405.ld */
+/* stm32f405.ld. The last is an address like a handler's, the first of the vectors. */
+extern uint32_t data_load, data_begin, data_end, zero_begin, zero_end;
+void stack_end(void);
 int main(void);
 
 void on_reset(void);
@@ -60,7 +62,7 @@ typedef void (*handler)(void);
 
 /* The chip's interrupts stand behind the processor's 16 vectors. */
 __attribute__((section(".vectors"), used)) static const handler vectors[16 + 72] = {
-    (handler)&stack_end,
+    stack_end,
     on_reset,
     on_fault,
     on_fault,

@@ -28,7 +28,7 @@ flash_of() {
     cortex_m3) compiler+=(-mcpu=cortex-m3) ;;
     cortex_m4f) compiler+=(-mcpu=cortex-m4 -mfloat-abi=hard -mfpu=fpv4-sp-d16) ;;
     rv32imac) compiler=(riscv64-unknown-elf-gcc -march=rv32imac -mabi=ilp32
-                        --specs=picolibc.specs -Wl,--defsym=__flash_size=1M) ;;
+                        --specs=picolibc.specs '-Wl,--defsym=__flash_size=1M') ;;
   esac
   printf 'void hf_panic(void) { for (;;) {} }' >"$out/panic.c"
   quietly "${compiler[@]}" -Os -nostartfiles -Wl,--gc-sections,-e,hf_init,-z,noexecstack \
@@ -52,7 +52,8 @@ for core in cortex_m0 cortex_m3 cortex_m4f rv32imac host; do
 done
 echo "library: bytes of flash for $(paste -sd, "$out/sizes" | sed 's/,/, /g')"
 configure "$root/examples/module" cortex_m4f "$out/build/example" \
-  -DCMAKE_PREFIX_PATH="$out/cortex_m4f" -DCMAKE_FIND_ROOT_PATH="$out/cortex_m4f"
+  -DCMAKE_COMPILE_WARNING_AS_ERROR=ON -DCMAKE_PREFIX_PATH="$out/cortex_m4f" \
+  -DCMAKE_FIND_ROOT_PATH="$out/cortex_m4f"
 configure "$root/examples/module" cortex_m4f "$out/build/example_whole" \
   -DHOLDFAST="$root" -DHOLDFAST_MODULE_SMALL=OFF
 for kind in '' _whole; do
