@@ -12,7 +12,9 @@
 extern "C" {
 extern const holdfast::module::Configuration holdfast_configuration;  // From the linker script.
 const holdfast::module::Status* volatile holdfast_status = nullptr;
-volatile holdfast::firmware::Stop holdfast_stop = holdfast::firmware::Stop::kRunning;
+[[gnu::section(".keep")]] volatile holdfast::firmware::Stop holdfast_stop;
+volatile holdfast::firmware::Stop holdfast_last_stop;  ///< After a loss of power anything.
+volatile std::uint32_t holdfast_reset_reason;          ///< Port::take_reset_reason()
 /// For those who take the program apart: how much of the memory the agent is.
 extern const std::uint32_t holdfast_agent_bytes;
 [[gnu::section(".facts"), gnu::used]] const std::uint32_t holdfast_agent_bytes =
@@ -34,6 +36,7 @@ alignas(module::Module) std::byte module_storage[sizeof(module::Module)];
 void stop(Stop reason) {
   holdfast_stop = reason;
   for (;;) {
+    SelectedPort::signal(static_cast<std::uint32_t>(reason), reason == Stop::kNoConfiguration);
   }
 }
 
@@ -47,10 +50,13 @@ extern "C" [[noreturn]] void holdfast_main();
 
 void holdfast_main() {
   using namespace holdfast;
+  auto& port = *new (firmware::port_storage) firmware::SelectedPort();
+  holdfast_reset_reason = firmware::SelectedPort::take_reset_reason();
+  holdfast_last_stop = holdfast_stop;
+  holdfast_stop = firmware::Stop::kRunning;
   if (!module::is_valid(holdfast_configuration)) {
     firmware::stop(firmware::Stop::kNoConfiguration);
   }
-  auto& port = *new (firmware::port_storage) firmware::SelectedPort();
   auto& module =
       *new (firmware::module_storage) module::Module(holdfast_configuration, firmware::plans, port);
   holdfast_status = &module.status();

@@ -19,6 +19,7 @@ extern std::uint32_t holdfast_stack_begin, holdfast_stack_end;
 constexpr std::uint32_t kPaint = 0xc5c5c5c5;
 
 [[noreturn]] void holdfast_reset() {
+  asm volatile("cpsid i");  // A bootloader may have left some enabled.
   // Leave alone what this function itself has on the stack.
   const auto here = reinterpret_cast<std::uint32_t*>(__builtin_frame_address(0)) - 16;
   for (std::uint32_t* word = &holdfast_stack_begin; word < here; ++word) {

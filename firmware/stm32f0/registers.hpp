@@ -15,6 +15,14 @@ struct Rcc {  // RM0091, 6.4
       CFGR3, CR2;
 };
 
+struct Watchdog {  // 24.4, the independent one
+  Register KR, PR, RLR, SR;
+};
+
+struct Syscfg {  // 9.1
+  Register CFGR1;
+};
+
 struct Flash {  // 3.5
   Register ACR;
 };
@@ -66,6 +74,13 @@ inline Timer& timer2() { return at<Timer>(0x40000000); }
 inline Timer& timer3() { return at<Timer>(0x40000400); }
 
 inline Adc& adc() { return at<Adc>(0x40012400); }
+
+inline Watchdog& watchdog() { return at<Watchdog>(0x40003000); }
+
+inline Syscfg& syscfg() { return at<Syscfg>(0x40010000); }
+
+/// Interrupts of the chip that are enabled (ARMv6-M, B3.4): ones written here disable them.
+inline Register& interrupt_disable() { return at<Register>(0xE000E180); }
 
 /// DMA1 or DMA2.
 inline Dma& dma(std::uint32_t number) { return at<Dma>(0x40020000 + (number - 1) * 0x400); }

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "holdfast/boards/stm32f0.hpp"
 #include "holdfast/module/serial_port.hpp"
 
 namespace holdfast::stm32f0 {
@@ -20,11 +19,15 @@ class Stm32f0Port final : public module::SerialPort {
   bool is_line_free(int face) override;
   void show(const agent::Colour& colour) override;
 
- private:
-  /// 44 ms of bytes, or 67 of version 1's. A line on which more comes in during one step loses
-  /// some, and the links repeat them.
-  static constexpr std::size_t kRingBytes = boards::stm32f0::kBaud < 115'200 ? 256 : 512;
+  /// Flags of RCC_CSR, its upper byte: 0x80 low power, 0x40 and 0x20 watchdogs, 0x10 software, 0x08
+  /// power, 0x04 pin, 0x02 option bytes. Once after each start.
+  static std::uint32_t take_reset_reason();
 
+  /// So many red flashes and a pause, for a program that has stopped. The watchdog ends it, unless
+  /// it is for ever.
+  static void signal(std::uint32_t count, bool is_for_ever);
+
+ private:
   bool read(int face, std::uint8_t& byte) override;
   std::span<std::uint8_t, module::kFrameBytesMax> buffer(int face) override;
   void transmit(int face, int size) override;
@@ -32,16 +35,6 @@ class Stm32f0Port final : public module::SerialPort {
 
   std::uint8_t busy_lines();
   bool is_anything_here();
-
-  struct Face {
-    std::array<std::uint8_t, kRingBytes> ring;
-    std::array<std::uint8_t, module::kFrameBytesMax> frame;
-    std::uint16_t read_at = 0;
-  };
-
-  std::array<Face, 6> faces_;
-  std::uint32_t time_high_ = 0;
-  std::uint32_t time_low_ = 0;
 };
 
 }  // namespace holdfast::stm32f0

@@ -73,6 +73,7 @@ Stm32f4Port::Stm32f4Port() {
     const std::uint32_t number = kLines[face].interrupt;
     interrupt_enable(number) = 1U << number % 32;
   }
+  asm volatile("cpsie i");  // Start-up has disabled them.
 }
 
 Time Stm32f4Port::now() {

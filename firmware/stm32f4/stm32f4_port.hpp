@@ -18,6 +18,10 @@ class Stm32f4Port final : public module::SerialPort {
   bool is_line_free(int face) override;
   void show(const agent::Colour& colour) override;
 
+  static std::uint32_t take_reset_reason() { return 0; }
+
+  static void signal(std::uint32_t, bool) {}
+
   /// From the interrupt of a face's USART.
   void take_byte(int face);
 

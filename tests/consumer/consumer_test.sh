@@ -69,7 +69,7 @@ done
 
 library=$(echo "$prefix"/lib*/libholdfast.so)
 nm -D --defined-only "$library" >"$work/names"
-! grep -Ev ' _Z(N|NK|T.N)8holdfast' "$work/names" || fault "$library exports others' names"
+! grep -Ev ' (_Z(N|NK|T.N)8holdfast|hf_)' "$work/names" || fault "$library exports others' names"
 
 for kind in shared static; do
   # Who links the shared library needs nothing of what is within.
@@ -95,4 +95,13 @@ LD_LIBRARY_PATH=$(dirname "$library") uses_shared yes "$work/by_pkg_config"
 read -ra libraries < <(pkg-config --static --libs holdfast | sed 's/-lholdfast/-l:libholdfast.a/')
 "$compiler" "$work/main.o" "${libraries[@]}" -o "$work/by_pkg_config_static"
 uses_shared no "$work/by_pkg_config_static"
-echo "consumer: installed, moved, linked in four ways"
+# The program of a module, in C.
+"$compiler" -x c -std=c99 "${flags[@]}" -c "$repository/examples/module/on_terminals.c" \
+  -o "$work/module.o"
+read -ra libraries < <(pkg-config --libs holdfast)
+"$compiler" "$work/module.o" "${libraries[@]}" -o "$work/module"
+code=0
+LD_LIBRARY_PATH=$(dirname "$library") "$work/module" "$here/main.cpp" 2>"$work/log" || code=$?
+[ $code -eq 65 ] && grep -q "no configuration of this version" "$work/log" ||
+  fault "on_terminals takes a page that is none: exit $code, $(cat "$work/log")"
+echo "consumer: installed, moved, linked in five ways"

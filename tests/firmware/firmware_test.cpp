@@ -283,5 +283,33 @@ TEST(FirmwareFaults, a_damaged_byte_does_no_harm) { break_robots(Fault::Kind::kF
 
 TEST(FirmwareFaults, a_module_that_starts_again_joins_in) { break_robots(Fault::Kind::kReset, 4); }
 
+/// A processor's fault finds its vector behind the bootloader, the lamp shows it, the watchdog
+/// starts the module again, and it joins in.
+TEST(FirmwareFaults, a_program_that_goes_astray_starts_again) {
+  const Structure structure = load("arm_tips_b");
+  const auto emulation = finished(
+      structure, {.faults = {{.kind = Fault::Kind::kCrash, .at = 2'000'000, .module = 1}}});
+  EXPECT_TRUE(emulation.result().all_agree);
+  EXPECT_EQ(emulation.result().answer.verdict, agent::Verdict::kUnstable);
+  EXPECT_EQ(emulation.report().watchdog_count, 1U);
+  EXPECT_EQ(emulation.report().mismatch_count, 0U);
+}
+
+/// RM0091, 27.5.5: a USART bears 3.33 % between two clocks. Crystals are off by some 50 ppm;
+/// without, the HSI48 is by up to 3 %.
+TEST(FirmwareFaults, clocks_may_be_off_as_far_as_lines_bear_it) {
+  const Structure structure = load("crane_breaks_a");
+  const auto crystals = finished(structure, {.clock_off_ppm = 50});
+  EXPECT_EQ(crystals.result().answer.verdict, agent::Verdict::kSafe);
+  const auto good = finished(structure, {.clock_off_ppm = 15'000, .has_crystals = false});
+  EXPECT_TRUE(good.result().all_agree);
+  EXPECT_EQ(good.result().answer.verdict, agent::Verdict::kSafe);
+  EXPECT_EQ(good.report().mismatch_count, 0U);
+  const auto bad =
+      finished(structure, {.clock_off_ppm = 30'000, .has_crystals = false, .time_max = 20'000'000});
+  EXPECT_FALSE(bad.result().all_agree && bad.result().answer.verdict == agent::Verdict::kSafe);
+  EXPECT_GT(bad.report().lost_bytes, 100 + good.report().lost_bytes);
+}
+
 }  // namespace
 }  // namespace holdfast

@@ -7,7 +7,7 @@ The documents show what emulated modules do, and how large the images are. IMAGE
 - the rows of the scenarios in docs/firmware.md: seconds are simulated, from the plan
   (or the start) to the last module's verdict, on both boards' lines; printed as they are measured
 - the command in docs/tour.md that needs the firmware prints what is shown
-- sizes of images, wherever a sentence or a table gives them
+- sizes of images and of the library, wherever a sentence or a table gives them
 
 What the published method takes stays as it is: preset iterations x 110.5 ms [Piranda 2021].
 With --renew all of it is written anew; look at the difference.
@@ -32,7 +32,7 @@ class Documents:
     def __init__(self, repository):
         self.repository = repository
         self.texts = {name: (repository / name).read_text()
-                      for name in ('docs/tour.md', 'docs/firmware.md')}
+                      for name in ('docs/tour.md', 'docs/firmware.md', 'docs/porting.md')}
         self.faults = []
 
     def expect(self, name, pattern, value):
@@ -97,6 +97,12 @@ def check_sizes(documents, images, v2, v1):
                      f'{text + data:,} bytes of flash of 262,144, {data + bss:,} of RAM')
 
 
+def check_library(documents, images):
+    for line in (images / 'library/sizes').read_text().splitlines():
+        core, flash = line.split()
+        documents.expect('docs/porting.md', rf'{core}\.cmake\) \| ([\d,]+) \|$', f'{int(flash):,}')
+
+
 def main():
     holdfast, repository, images = (pathlib.Path(word).resolve() for word in sys.argv[1:4])
     documents = Documents(repository)
@@ -108,6 +114,7 @@ def main():
             v2, v1 = next(reports), next(reports)
             check_scenario(documents, scenario, v2, v1)
     check_sizes(documents, images, v2['firmware'], v1['firmware'])
+    check_library(documents, images)
     shown = 'emulate scenarios/arm_breaks_b.json'
     printed = subprocess.run([holdfast, *shown.split()], cwd=repository, capture_output=True,
                              text=True, check=False).stdout.rstrip('\n').split('\n')

@@ -22,6 +22,9 @@ constexpr Time kReadTime = 10'000;
 /// is missed after 250 ms.
 constexpr Time kNoticeTime = 300'000;
 
+/// A module that faults shows it for 2 s, until its watchdog starts it again.
+constexpr Time kRestartTime = 2'500'000;
+
 /// Ten bits on a line.
 constexpr Cycles byte_cycles(std::uint32_t baud) {
   return Cycles{10} * boards::stm32f0::baud_divisor(baud);
@@ -116,6 +119,7 @@ class EmulatedModules {
   std::vector<std::uint8_t> attached_;                                  ///< By module, 0 or 1.
   std::vector<std::array<std::uint8_t, base::kDirectionCount>> flips_;  ///< Of the next byte.
   std::size_t next_fault_ = 0;
+  Cycles slice_ = kSliceCycles;
   Cycles now_ = 0;
   Time planned_at_ = 0;
   Time noticed_at_ = 0;  ///< When the last fault so far has changed what modules show.
@@ -129,10 +133,17 @@ EmulatedModules::EmulatedModules(const Image& image, const model::Robot& robot,
       costs_(Processor::kFlashBegin, Processor::kFlashBytes) {
   const std::size_t count = robot.modules().size() - robot.planned_count();
   base::Rng rng(options.seed);
+  base::Rng clocks(options.seed + 1);
+  const auto off = static_cast<std::int32_t>(options.clock_off_ppm);
+  // The fastest clock's byte.
+  slice_ = kSliceCycles - kSliceCycles * options.clock_off_ppm / 500'000;
   for (const module::Configuration& configuration : configurations(robot, options)) {
     const std::uint64_t seed = rng.next();
     const Cycles start = cycles(rng.below(options.start_spread + 1));
-    modules_.push_back(std::make_unique<ModuleCpu>(image, costs_, configuration, seed, start));
+    const BoardOptions board{.clock_off_ppm = off > 0 && clocks.below(2) == 0 ? -off : off,
+                             .has_crystal = options.has_crystals};
+    modules_.push_back(
+        std::make_unique<ModuleCpu>(image, costs_, configuration, seed, start, board));
   }
   cut_faces_.resize(count);
   attached_.resize(count, 1);
@@ -200,7 +211,7 @@ bool EmulatedModules::run_for(Time duration) {
 
 /// Nothing that is sent from `begin` on arrives within a byte's time.
 void EmulatedModules::run_slice(Cycles begin) {
-  const Cycles end = begin + kSliceCycles;
+  const Cycles end = begin + slice_;
   for (const auto& module : modules_) {
     module->run(end);
   }
@@ -255,6 +266,10 @@ void EmulatedModules::make_fault(const Fault& fault) {
       break;
     case Fault::Kind::kReset:
       modules_[at(fault.module)]->reset();
+      break;
+    case Fault::Kind::kCrash:
+      modules_[at(fault.module)]->crash();
+      noticed_at_ = fault.at + kRestartTime;
       break;
     case Fault::Kind::kAttach:
       attached_[at(fault.module)] = 1;
@@ -353,6 +368,7 @@ FirmwareReport EmulatedModules::report() const {
     }
     report.mismatch_count += steps.mismatch_count;
     report.lost_bytes += module->lost_bytes();
+    report.watchdog_count += module->reset_count();
   }
   report.step_cycles_mean = report.step_count > 0 ? cycles_all / report.step_count : 0;
   return report;
@@ -362,8 +378,8 @@ std::vector<std::vector<std::uint8_t>> configuration_pages(const model::Robot& r
                                                            const EmulationOptions& options) {
   std::vector<std::vector<std::uint8_t>> pages;
   for (const module::Configuration& configuration : configurations(robot, options)) {
-    pages.emplace_back(sizeof(configuration));
-    std::memcpy(pages.back().data(), &configuration, sizeof(configuration));
+    pages.emplace_back(module::kConfigurationBytes);
+    std::memcpy(pages.back().data(), &configuration, pages.back().size());
   }
   return pages;
 }

@@ -61,42 +61,93 @@ Stm32f091::Hooks ModuleCpu::hooks() {
 }
 
 ModuleCpu::ModuleCpu(const Image& image, CostTable& costs,
-                     const module::Configuration& configuration, std::uint64_t seed, Cycles start)
+                     const module::Configuration& configuration, std::uint64_t seed, Cycles start,
+                     const BoardOptions& board)
     : image_(image),
       configuration_(configuration),
       shadow_(std::make_unique<agent::Agent>(configuration_.setup, configuration_.identity)),
       stm_(hooks(), seed),
       processor_(image, costs, stm_, *this, image.at(kStep)),
-      wake_at_(start) {
+      clock_off_ppm_(board.clock_off_ppm),
+      wake_at_(own(start)) {
+  if (!board.has_crystal) {
+    stm_.take_crystal_off();
+  }
   std::array<std::uint8_t, module::kConfigurationBytes> page{};
   std::memcpy(page.data(), &configuration_, page.size());
   processor_.write(image.at("holdfast_configuration"), page);
 }
 
+Cycles ModuleCpu::own(Cycles time) const {
+  const auto off = static_cast<std::int64_t>(time) * clock_off_ppm_ / 1'000'000;
+  return time + static_cast<Cycles>(off);
+}
+
+Cycles ModuleCpu::outside(Cycles time) const {
+  return clock_off_ppm_ == 0 || time == ~Cycles{0}
+             ? time
+             : time * 1'000'000 / static_cast<Cycles>(1'000'000 + clock_off_ppm_);
+}
+
+Cycles ModuleCpu::own_next_time() const {
+  return is_waiting_ ? std::min(wake_at_, stm_.watchdog_at()) : processor_.now();
+}
+
 void ModuleCpu::run(Cycles limit) {
-  while (is_alive_ && next_time() < limit) {
+  const Cycles end = own(limit);
+  while (is_alive_ && own_next_time() < end) {
+    if (own_next_time() >= stm_.watchdog_at()) {
+      processor_.skip_to(own_next_time());
+      ++reset_count_;
+      reset(kResetByWatchdog);
+    }
     if (is_waiting_) {
       processor_.skip_to(std::max(wake_at_, processor_.now()));
       is_waiting_ = false;
     }
-    if (!processor_.run(limit)) {
+    if (processor_.run(std::min(end, stm_.watchdog_at()))) {
+      continue;
+    }
+    // A HardFault. Without vectors of its own the program does not learn of it.
+    constexpr std::uint32_t kHardFault = 0x2000000C;
+    if (!stm_.has_vectors_in_ram()) {
       kill();
     }
+    is_inside_ = false;
+    processor_.jump(processor_.word(kHardFault));
   }
 }
 
 void ModuleCpu::arrive(int usart, const Arrival& arrival) {
-  stm_.arrive(usart, arrival);
-  wake_at_ = std::min(wake_at_, arrival.time);
+  const Arrival here{
+      .time = own(arrival.time), .byte_cycles = own(arrival.byte_cycles), .byte = arrival.byte};
+  stm_.arrive(usart, here);
+  wake_at_ = std::min(wake_at_, here.time);
 }
 
-void ModuleCpu::reset() {
-  stm_.reset();
+std::vector<Sent> ModuleCpu::take_sent() {
+  std::vector<Sent> all = stm_.take_sent();
+  for (Sent& sent : all) {
+    sent.begin = outside(sent.begin);
+    sent.byte_cycles = outside(sent.byte_cycles);
+  }
+  return all;
+}
+
+void ModuleCpu::reset(std::uint32_t reason) {
+  stm_.reset(reason);
   processor_.reset();
   shadow_ = std::make_unique<agent::Agent>(configuration_.setup, configuration_.identity);
   is_inside_ = false;
   is_waiting_ = false;
   verdict_ = agent::Verdict::kNone;
+}
+
+void ModuleCpu::crash() {
+  constexpr std::uint32_t kNoProgram = 0x10000000;
+  processor_.jump(kNoProgram);
+  is_inside_ = false;
+  is_waiting_ = false;
 }
 
 module::Status ModuleCpu::status() const {
@@ -154,7 +205,7 @@ void ModuleCpu::left() {
   }
   const agent::Verdict verdict = shadow_->answer().verdict;
   if (verdict != verdict_ && verdict != agent::Verdict::kNone) {
-    steps_.verdict_time = processor_.now();
+    steps_.verdict_time = outside(processor_.now());
   }
   verdict_ = verdict;
 }

@@ -28,28 +28,38 @@ struct StepRecord {
   Cycles verdict_time = 0;
 };
 
-/// One module: a processor with its peripherals, and the host's agent beside it.
+/// What is odd about one module's board.
+struct BoardOptions {
+  std::int32_t clock_off_ppm = 0;  ///< How much faster than 48 MHz its clock runs.
+  bool has_crystal = true;
+};
+
+/// One module: a processor with its peripherals, and the host's agent beside it. Times that go in
+/// and out are cycles of a clock of 48 MHz; within they are those of its own, which may be off.
 class ModuleCpu final : public Watcher {
  public:
   ModuleCpu(const Image& image, CostTable& costs, const module::Configuration& configuration,
-            std::uint64_t seed, Cycles start);
+            std::uint64_t seed, Cycles start, const BoardOptions& board);
 
   /// Runs until `limit`, skipping what it only waits for.
   void run(Cycles limit);
 
   /// When it does something next.
-  Cycles next_time() const { return is_waiting_ ? wake_at_ : processor_.now(); }
+  Cycles next_time() const { return outside(own_next_time()); }
 
   void arrive(int usart, const Arrival& arrival);
 
-  std::vector<Sent> take_sent() { return stm_.take_sent(); }
+  std::vector<Sent> take_sent();
 
-  void reset();
+  void reset(std::uint32_t reason = kResetByPin);
+
+  /// Its program jumps to where there is none.
+  void crash();
 
   void kill() { is_alive_ = false; }
 
   /// The module starts only then.
-  void start_at(Cycles time) { wake_at_ = time; }
+  void start_at(Cycles time) { wake_at_ = own(time); }
 
   bool is_alive() const { return is_alive_; }
 
@@ -60,6 +70,8 @@ class ModuleCpu final : public Watcher {
 
   const StepRecord& steps() const { return steps_; }
 
+  std::uint32_t reset_count() const { return reset_count_; }
+
   std::uint64_t lost_bytes() const { return stm_.lost_bytes(); }
 
   void entered(std::span<const std::uint32_t, 4> arguments) override;
@@ -67,6 +79,9 @@ class ModuleCpu final : public Watcher {
 
  private:
   Stm32f091::Hooks hooks();
+  Cycles own_next_time() const;
+  Cycles own(Cycles time) const;
+  Cycles outside(Cycles time) const;
   void read_event(std::uint32_t address);
   void compare_actions();
   void take_packet(std::span<const std::uint8_t> packet);
@@ -76,6 +91,8 @@ class ModuleCpu final : public Watcher {
   std::unique_ptr<agent::Agent> shadow_;
   Stm32f091 stm_;
   Processor processor_;
+  std::int64_t clock_off_ppm_ = 0;
+  std::uint32_t reset_count_ = 0;  ///< By its watchdog.
   bool is_alive_ = true;
   bool is_waiting_ = true;
   bool is_inside_ = false;

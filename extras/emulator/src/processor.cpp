@@ -12,13 +12,15 @@
 namespace holdfast::emulator {
 namespace {
 
-/// Peripherals of the buses APB and AHB1, and ports of AHB2 (RM0091, 2.2.2).
+/// Peripherals of the buses APB and AHB1, ports of AHB2 (RM0091, 2.2.2), and the processor's own
+/// (ARMv6-M, B3.2), which do nothing, as no program here has interrupts.
 struct Window {
   std::uint32_t begin;
   std::uint32_t size;
 };
 
-constexpr std::array<Window, 2> kWindows = {{{0x40000000, 0x24000}, {0x48000000, 0x2000}}};
+constexpr std::array<Window, 3> kWindows = {
+    {{0x40000000, 0x24000}, {0x48000000, 0x2000}, {0xE000E000, 0x1000}}};
 
 void check(uc_err error) { HOLDFAST_CHECK(error == UC_ERR_OK); }
 
@@ -71,6 +73,7 @@ Processor::Processor(const Image& image, CostTable& costs, Peripherals& peripher
   check(uc_mem_map(engine_, kRamBegin, kRamBytes, UC_PROT_READ | UC_PROT_WRITE));
   Callbacks::map<0>(engine_, this);
   Callbacks::map<1>(engine_, this);
+  Callbacks::map<2>(engine_, this);
   for (const Image::Segment& segment : image.segments) {
     write(segment.address, segment.bytes);
   }
@@ -85,7 +88,11 @@ Processor::~Processor() { uc_close(engine_); }
 void Processor::reset() {
   const std::uint32_t stack = word(vectors_);
   check(uc_reg_write(engine_, UC_ARM_REG_SP, &stack));
-  program_counter_ = word(vectors_ + 4);
+  jump(word(vectors_ + 4));
+}
+
+void Processor::jump(std::uint32_t address) {
+  program_counter_ = address;
   next_ = 0;
   if_taken_ = 0;
   return_ = 0;

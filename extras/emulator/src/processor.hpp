@@ -48,6 +48,9 @@ class Processor {
   /// As the reset pin does: memory stays as it is.
   void reset();
 
+  /// Goes on elsewhere, as when an exception is taken.
+  void jump(std::uint32_t address);
+
   /// Runs until the clock shows `limit` or later, or stop() is called. False: the program did what
   /// no program may, and the processor has locked up.
   bool run(Cycles limit);

@@ -20,6 +20,8 @@ Processor::~Processor() = default;
 
 void Processor::reset() {}
 
+void Processor::jump(std::uint32_t) {}
+
 bool Processor::run(Cycles) { return false; }
 
 void Processor::stop() {}

@@ -12,6 +12,8 @@ constexpr Cycles kNever = ~Cycles{0};
 // RM0091, table 1.
 constexpr std::uint32_t kTimer2 = 0x40000000;
 constexpr std::uint32_t kTimer3 = 0x40000400;
+constexpr std::uint32_t kWatchdog = 0x40003000;
+constexpr std::uint32_t kSyscfg = 0x40010000;
 constexpr std::uint32_t kAdc = 0x40012400;
 constexpr std::uint32_t kDma = 0x40020000;  // DMA2 lies 0x400 behind DMA1.
 constexpr std::uint32_t kRcc = 0x40021000;
@@ -20,11 +22,16 @@ constexpr std::array<std::uint32_t, kUsartCount> kUsarts = {0x40013800, 0x400044
                                                             0x40004C00, 0x40005000, 0x40011400};
 
 // Offsets of registers.
+constexpr std::uint32_t kRccCr = kRcc + 0x00;
 constexpr std::uint32_t kRccCfgr = kRcc + 0x04;
 constexpr std::uint32_t kRccAhb = kRcc + 0x14;
 constexpr std::uint32_t kRccApb2 = kRcc + 0x18;
 constexpr std::uint32_t kRccApb1 = kRcc + 0x1C;
+constexpr std::uint32_t kRccCsr = kRcc + 0x24;
 constexpr std::uint32_t kRccCr2 = kRcc + 0x34;
+constexpr std::uint32_t kWatchdogPr = kWatchdog + 0x04;
+constexpr std::uint32_t kWatchdogRlr = kWatchdog + 0x08;
+constexpr std::uint32_t kWatchdogSr = kWatchdog + 0x0C;
 constexpr std::uint32_t kUsartCr1 = 0x00;
 constexpr std::uint32_t kUsartCr3 = 0x08;
 constexpr std::uint32_t kUsartBrr = 0x0C;
@@ -57,6 +64,16 @@ constexpr std::uint32_t kDmaReceives = 1U << 6U;
 constexpr std::uint32_t kDmaSends = 1U << 7U;
 constexpr std::uint32_t kCompared = 1U << 1U;
 
+// RCC's, each with "ready" one bit above "on"; and the PLL's source and factor for 48 MHz: 8 MHz of
+// the crystal times 6. Others are not emulated: with them it never gets ready.
+constexpr std::uint32_t kHsiOn = 1U << 0U;
+constexpr std::uint32_t kHseOn = 1U << 16U;
+constexpr std::uint32_t kPllOn = 1U << 24U;
+constexpr std::uint32_t kHsi48On = 1U << 16U;
+constexpr std::uint32_t kPllBits = 3U << 15U | 15U << 18U;
+constexpr std::uint32_t kPllOf48Mhz = 2U << 15U | 4U << 18U;
+constexpr std::uint32_t kPllOfBootloader = 10U << 18U;  // HSI / 2 times 12
+
 // Channels that can serve a USART (RM0091, tables 33 and 34), by controller; bit: channel.
 constexpr std::array<std::uint32_t, 2> kReceiveChannels = {0b01101010, 0b00001100};
 constexpr std::array<std::uint32_t, 2> kSendChannels = {0b10010100, 0b00110010};
@@ -65,16 +82,78 @@ bool has(std::uint32_t value, std::uint32_t bits) { return (value & bits) == bit
 
 }  // namespace
 
-Stm32f091::Stm32f091(Hooks hooks, std::uint64_t seed) : hooks_(std::move(hooks)), noise_(seed) {}
+Stm32f091::Stm32f091(Hooks hooks, std::uint64_t seed) : hooks_(std::move(hooks)), noise_(seed) {
+  reset(kResetByPower);
+}
 
-void Stm32f091::reset() {
+void Stm32f091::reset(std::uint32_t reason) {
   registers_.clear();
+  reg(kRccCr) = kHsiOn | kHsiOn << 1U | kPllOn | kPllOn << 1U;
+  reg(kRccCfgr) = kPllOfBootloader | 2U | 2U << 2U;
+  reg(kRccCsr) = reason;
+  reg(kWatchdogRlr) = 0xfff;
   receiving_ = {};
   sending_ = {};
   line_free_at_ = {};
   sent_.clear();
   is_compare_armed_ = false;
   is_compared_ = false;
+  watchdog_at_ = kNever;
+  is_watchdog_open_ = false;
+}
+
+bool Stm32f091::has_vectors_in_ram() const { return (look(kSyscfg) & 3U) == 3U; }
+
+/// 6.4.1, 6.4.2, 6.4.10 and 6.4.14: what is switched on gets ready at once if it can; the PLL's
+/// bits stand while it runs; the system takes a source that is ready.
+void Stm32f091::write_clocks(std::uint32_t address, std::uint32_t value) {
+  const bool runs_pll = has(look(kRccCr), kPllOn);
+  if (address == kRccCsr) {
+    reg(kRccCsr) = has(value, 1U << 24U) ? 0 : look(kRccCsr);
+    return;
+  }
+  if (address == kRccCfgr && runs_pll) {
+    value = (value & ~kPllBits) | (look(kRccCfgr) & kPllBits);
+  }
+  const auto ready = [&](std::uint32_t bit, bool can) {
+    value &= ~(bit << 1U);
+    value |= can ? (value & bit) << 1U : 0;
+  };
+  if (address == kRccCr) {
+    ready(kHsiOn, true);
+    ready(kHseOn, has_crystal_);
+    const bool has_input = has(value, kHseOn << 1U);
+    const std::uint32_t source = look(kRccCfgr) & kPllBits;
+    ready(kPllOn, (source == kPllOf48Mhz && has_input) || source == kPllOfBootloader);
+  } else if (address == kRccCr2) {
+    ready(kHsi48On, true);
+  } else {
+    const std::uint32_t wanted = value & 3U;
+    const std::uint32_t control = look(kRccCr);
+    const std::array<bool, 4> is_ready = {has(control, kHsiOn << 1U), has(control, kHseOn << 1U),
+                                          has(control, kPllOn << 1U),
+                                          has(look(kRccCr2), kHsi48On << 1U)};
+    const std::uint32_t in_use = is_ready[wanted] ? wanted << 2U : look(kRccCfgr) & 0xcU;
+    value = (value & ~0xcU) | in_use;
+  }
+  reg(address) = value;
+}
+
+/// 24.3 and 24.4, with an LSI of 40 kHz.
+void Stm32f091::write_watchdog(std::uint32_t address, std::uint32_t value) {
+  if (address != kWatchdog) {
+    if (is_watchdog_open_ && address != kWatchdogSr) {
+      reg(address) = value;
+    }
+    return;
+  }
+  is_watchdog_open_ = value == 0x5555;
+  const bool runs = watchdog_at_ != kNever;
+  if (value == 0xCCCC || (value == 0xAAAA && runs)) {
+    constexpr Cycles kLsi = 48'000'000 / 40'000;
+    const Cycles reload = look(kWatchdogRlr);
+    watchdog_at_ = hooks_.now() + (reload + 1) * (Cycles{4} << (look(kWatchdogPr) & 7U)) * kLsi;
+  }
 }
 
 std::uint32_t Stm32f091::look(std::uint32_t address) const {
@@ -94,6 +173,8 @@ bool Stm32f091::is_clocked(std::uint32_t address) const {
       return has(look(kRccApb1), 1U << 0U);
     case kTimer3:
       return has(look(kRccApb1), 1U << 1U);
+    case kSyscfg:
+      return has(look(kRccApb2), 1U << 0U);
     case kUsarts[0]:
       return has(look(kRccApb2), 1U << 14U);
     case kUsarts[1]:
@@ -175,6 +256,14 @@ void Stm32f091::write(std::uint32_t address, std::uint32_t value) {
     is_compared_ = is_compared_ && has(value, kCompared);
     return;
   }
+  if (address == kRccCr || address == kRccCfgr || address == kRccCr2 || address == kRccCsr) {
+    write_clocks(address, value);
+    return;
+  }
+  if ((address & ~0x3ffU) == kWatchdog) {
+    write_watchdog(address, value);
+    return;
+  }
   reg(address) = value;
   const std::uint32_t place = address - kDma;
   const bool is_channel = place < 0x800 && place % 0x400 >= kDmaFirstChannel &&
@@ -183,12 +272,6 @@ void Stm32f091::write(std::uint32_t address, std::uint32_t value) {
     start_channel(address);
   }
   switch (address) {
-    case kRccCr2:
-      reg(kRccCr2) = value | (value & 1U << 16U) << 1U;  // HSI48 is ready at once.
-      break;
-    case kRccCfgr:
-      reg(kRccCfgr) = (value & ~0xcU) | (value & 3U) << 2U;
-      break;
     case kAdcCr:
       reg(kAdcIsr) = value & 5U;  // Ready, and every conversion done at once.
       break;
@@ -283,6 +366,8 @@ void Stm32f091::catch_up() {
   }
 }
 
+/// A USART bears 3.33 % between the two clocks (27.5.5, 8 bits, three samples); a byte beyond is
+/// lost.
 bool Stm32f091::take_byte(int usart, const Arrival& arrival) {
   const std::uint32_t base = kUsarts[at(usart)];
   const Transfer& transfer = receiving_[at(usart)];
@@ -290,7 +375,7 @@ bool Stm32f091::take_byte(int usart, const Arrival& arrival) {
   const Cycles apart =
       own > arrival.byte_cycles ? own - arrival.byte_cycles : arrival.byte_cycles - own;
   const bool is_ready = has(look(base + kUsartCr1), kReceives) &&
-                        has(look(base + kUsartCr3), kDmaReceives) && 40 * apart <= own;
+                        has(look(base + kUsartCr3), kDmaReceives) && 30 * apart <= own;
   if (!is_ready || transfer.channel == 0) {
     return false;
   }

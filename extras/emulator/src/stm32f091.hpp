@@ -13,9 +13,10 @@
 #include "processor.hpp"
 
 /// The peripherals of an STM32F091 as far as a module uses them, after the reference manual RM0091:
-/// reset and clock control (6), DMA (10), the ADC's temperature sensor (13), TIM2 and TIM3 (17, 18)
-/// and USART1 to 6 (27). A peripheral whose clock is off reads as zero and takes nothing; a
-/// transfer needs the right channel, request, direction and address; a byte matching baud rates.
+/// reset and clock control (6), SYSCFG's memory map (9), DMA (10), the ADC's temperature sensor
+/// (13), TIM2 and TIM3 (17, 18), the independent watchdog (24) and USART1 to 6 (27). A peripheral
+/// whose clock is off reads as zero and takes nothing; a transfer needs the right channel, request,
+/// direction and address; a byte matching baud rates.
 namespace holdfast::emulator {
 
 inline constexpr int kUsartCount = 6;
@@ -35,6 +36,11 @@ struct Arrival {
   std::uint8_t byte = 0;
 };
 
+/// Flags of RCC_CSR that say why the chip has started (6.4.10).
+inline constexpr std::uint32_t kResetByPower = 0x0C000000;
+inline constexpr std::uint32_t kResetByPin = 0x04000000;
+inline constexpr std::uint32_t kResetByWatchdog = 0x24000000;
+
 class Stm32f091 final : public Peripherals {
  public:
   /// What it asks of the processor; `now` is its clock.
@@ -50,8 +56,18 @@ class Stm32f091 final : public Peripherals {
   std::uint32_t read(std::uint32_t address) override;
   void write(std::uint32_t address, std::uint32_t value) override;
 
-  /// All registers as after a reset; what was being sent breaks off.
-  void reset();
+  /// All registers as a bootloader leaves them after a reset: it runs by the PLL, on the internal
+  /// oscillator, and has not put it back. What was being sent breaks off.
+  void reset(std::uint32_t reason = kResetByPin);
+
+  /// A board without: HSE never gets ready.
+  void take_crystal_off() { has_crystal_ = false; }
+
+  /// When the watchdog bites unless it is fed; never: ~0.
+  Cycles watchdog_at() const { return watchdog_at_; }
+
+  /// Is the RAM where the processor looks for its vectors?
+  bool has_vectors_in_ram() const;
 
   /// A byte that will come in; times never go back.
   void arrive(int usart, const Arrival& arrival) { arrivals_[at(usart)].push_back(arrival); }
@@ -81,6 +97,8 @@ class Stm32f091 final : public Peripherals {
   std::uint32_t look(std::uint32_t address) const;
   bool is_clocked(std::uint32_t address) const;
   Cycles byte_cycles(int usart) const;
+  void write_clocks(std::uint32_t address, std::uint32_t value);
+  void write_watchdog(std::uint32_t address, std::uint32_t value);
   void start_channel(std::uint32_t channel);
   void start_sending(int usart, Transfer& transfer);
   void catch_up();
@@ -97,6 +115,9 @@ class Stm32f091 final : public Peripherals {
   std::array<Transfer, kUsartCount> sending_;
   std::array<Cycles, kUsartCount> line_free_at_{};
   std::vector<Sent> sent_;
+  bool has_crystal_ = true;
+  Cycles watchdog_at_ = ~Cycles{0};
+  bool is_watchdog_open_ = false;  ///< Its registers may be written.
   Cycles timer_begin_ = 0;
   bool is_compare_armed_ = false;
   bool is_compared_ = false;

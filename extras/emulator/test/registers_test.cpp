@@ -86,14 +86,66 @@ TEST_F(Registers, of_a_peripheral_need_the_one_bit_that_starts_its_clock) {
   }
 }
 
+/// 6.4.1, 6.4.2 and 6.4.14. The system takes a source that is ready, and the PLL's bits stand while
+/// it runs, as behind a bootloader.
 TEST_F(Registers, of_the_clock_say_that_it_is_ready_and_switched) {
   Stm32f091 stm = make();
+  constexpr std::uint32_t kCr = kRcc;
+  constexpr std::uint32_t kCfgr = kRcc + 0x04;
+  constexpr std::uint32_t kSixTimesHse = 2U << 15U | 4U << 18U;
+  const auto in_use = [&] { return stm.read(kCfgr) >> 2U & 3U; };
+  EXPECT_EQ(in_use(), 2U);
+  stm.write(kCfgr, kSixTimesHse | 2U);
+  EXPECT_NE(stm.read(kCfgr) & kSixTimesHse, kSixTimesHse) << "the PLL runs";
+  stm.write(kCfgr, 0);
+  EXPECT_EQ(in_use(), 0U);
+  stm.write(kCr, 1U);  // PLLON 0
+  stm.write(kCfgr, 3U);
+  EXPECT_EQ(in_use(), 0U) << "HSI48 is off";
   stm.write(kRcc + 0x34, 1U << 16U);                        // HSI48ON
   EXPECT_EQ(stm.read(kRcc + 0x34), 1U << 16U | 1U << 17U);  // HSI48RDY
-  for (const std::uint32_t source : {0U, 1U, 2U, 3U}) {     // SW
-    stm.write(kRcc + 0x04, source);
-    EXPECT_EQ(stm.read(kRcc + 0x04) >> 2U & 3U, source);  // SWS
-  }
+  stm.write(kCfgr, kSixTimesHse | 3U);
+  EXPECT_EQ(in_use(), 3U);
+  stm.write(kCr, 1U | 1U << 16U);  // HSEON
+  EXPECT_EQ(stm.read(kCr), 3U | 3U << 16U);
+  stm.write(kCr, 1U | 1U << 16U | 1U << 24U);  // PLLON
+  EXPECT_EQ(stm.read(kCr), 3U | 3U << 16U | 3U << 24U);
+  stm.write(kCfgr, kSixTimesHse | 2U);
+  EXPECT_EQ(in_use(), 2U);
+}
+
+TEST_F(Registers, of_the_clock_never_say_that_a_crystal_is_ready_which_is_not_there) {
+  Stm32f091 stm = make();
+  stm.take_crystal_off();
+  stm.write(kRcc, 1U);
+  stm.write(kRcc + 0x04, 2U << 15U | 4U << 18U);
+  stm.write(kRcc, 1U | 1U << 16U | 1U << 24U);  // HSEON, PLLON
+  EXPECT_EQ(stm.read(kRcc), 3U | 1U << 16U | 1U << 24U);
+}
+
+/// 24.3 and 24.4: (RLR + 1) x 64 cycles of the LSI's 40 kHz; the registers open by 0x5555 alone.
+TEST_F(Registers, of_the_watchdog_say_when_it_bites) {
+  Stm32f091 stm = make();
+  constexpr std::uint32_t kKey = 0x40003000;
+  constexpr Cycles kNever = ~Cycles{0};
+  EXPECT_EQ(stm.watchdog_at(), kNever);
+  stm.write(kKey, 0xAAAA);
+  EXPECT_EQ(stm.watchdog_at(), kNever) << "it has not been started";
+  stm.write(kKey, 0xCCCC);
+  stm.write(kKey + 8, 1249);
+  stm.write(kKey, 0xAAAA);
+  EXPECT_EQ(stm.watchdog_at(), Cycles{4096} * 4 * 1200) << "the registers are closed";
+  stm.write(kKey, 0x5555);
+  stm.write(kKey + 4, 4);
+  stm.write(kKey + 8, 1249);
+  now_ = 1000;
+  stm.write(kKey, 0xAAAA);
+  EXPECT_EQ(stm.watchdog_at(), 1000 + Cycles{1250} * 64 * 1200);
+  stm.reset(kResetByWatchdog);
+  EXPECT_EQ(stm.watchdog_at(), kNever);
+  EXPECT_EQ(stm.read(kRcc + 0x24), kResetByWatchdog);
+  stm.write(kRcc + 0x24, 1U << 24U);  // RMVF
+  EXPECT_EQ(stm.read(kRcc + 0x24), 0U);
 }
 
 /// 13.13.1 and 13.13.3: ADRDY after ADEN, EOC after ADSTART.

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/module/module.hpp"
 
+#include <cstddef>
+
 namespace holdfast::module {
 namespace {
 
@@ -14,16 +16,11 @@ constexpr std::size_t kWithdrawalBytes = kPlanBytes + 1;
 /// A blinking lamp is dark while this bit of the time is set: on and off take 0.26 s each.
 constexpr Time kBlinkBit = Time{1} << 18U;
 
+/// Of all bytes before the sum, as they lie there.
 std::uint32_t sum_of(const PlanMemory::Copy& copy) {
-  std::uint32_t sum = copy.magic ^ copy.number;
-  for (int i = 0; i < copy.told.count(); ++i) {
-    const base::Cell cell = copy.told.cell(i);
-    for (const std::int32_t value :
-         {cell.x, cell.y, cell.z, static_cast<std::int32_t>(copy.told.told(i))}) {
-      sum = (sum << 5U | sum >> 27U) ^ static_cast<std::uint32_t>(value);
-    }
-  }
-  return ~sum;
+  constexpr std::uint16_t kStart = 0xffff;
+  return agent::wire::checksum(
+      {reinterpret_cast<const std::uint8_t*>(&copy), offsetof(PlanMemory::Copy, checksum)}, kStart);
 }
 
 bool is_sound(const PlanMemory::Copy& copy) {
@@ -115,10 +112,16 @@ void Module::take_plan(std::span<const std::uint8_t> payload) {
     return;
   }
   agent::wire::Reader in(payload, 0);
-  event_.cell.x = in.i32();
-  event_.cell.y = in.i32();
-  event_.cell.z = in.i32();
-  step(is_withdrawal ? EventKind::kWithdraw : EventKind::kPlan);
+  base::Cell cell;
+  cell.x = in.i32();
+  cell.y = in.i32();
+  cell.z = in.i32();
+  tell(is_withdrawal ? EventKind::kWithdraw : EventKind::kPlan, cell);
+}
+
+void Module::tell(EventKind kind, const base::Cell& cell) {
+  event_.cell = cell;
+  step(kind);
 }
 
 void Module::watch_neighbours() {

@@ -35,6 +35,7 @@ struct Fault {
     kCut,     ///< The line at `face` carries nothing, both ways.
     kFlip,    ///< One bit of the next byte that comes in at `face` flips.
     kReset,   ///< The module starts again; its memory stays as it is.
+    kCrash,   ///< Its program goes astray and faults.
     kAttach,  ///< The module comes to its place and starts; before, it is not there.
   };
 
@@ -55,6 +56,9 @@ struct EmulationOptions {
   bool tells_planned = true;     ///< False: nobody is told of them but by `announcements`.
   /// Announcements in the order of their times, each on a face of the module that is free then.
   std::vector<sim::Announcement> announcements = {};
+  /// The module's clocks are too fast or too slow by so many millionths, at random.
+  std::uint32_t clock_off_ppm = 0;
+  bool has_crystals = true;    ///< Boards without run on their internal oscillators.
   Time start_spread = 20'000;  ///< Modules start within so long.
   Time time_max = 60'000'000;
   Time time_min = 0;  ///< Not over sooner, as modules watch over a verdict that they know.
@@ -71,7 +75,8 @@ struct FirmwareReport {
   std::uint64_t step_cycles_max = 0;
   std::string step_longest;          ///< In which phase.
   std::uint64_t mismatch_count = 0;  ///< Steps in which image and host differ.
-  std::uint64_t lost_bytes = 0;      ///< That came to a USART that was not ready.
+  std::uint64_t lost_bytes = 0;      ///< That came to a USART that was not ready, or too fast.
+  std::uint32_t watchdog_count = 0;  ///< Modules that their watchdogs have started again.
   Time planned_at = 0;               ///< When the last plan was complete; 0: there is none.
 };
 

@@ -34,6 +34,16 @@ inline constexpr std::array<Line, 6> kLines = {{
 
 inline constexpr std::uint32_t kClockHz = 48'000'000;
 
+/// The crystal at HSE, which the PLL multiplies by a whole number, 2 to 16. Blinky Blocks 2's own
+/// library sets the PLL for 8 MHz times 6; of the board's schematics we know nothing.
+#ifdef HOLDFAST_CRYSTAL_HZ
+inline constexpr std::uint32_t kCrystalHz = HOLDFAST_CRYSTAL_HZ;
+#else
+inline constexpr std::uint32_t kCrystalHz = 8'000'000;
+#endif
+static_assert(kClockHz % kCrystalHz == 0 && kClockHz / kCrystalHz >= 2 &&
+              kClockHz / kCrystalHz <= 16);
+
 /// The number by which a USART divides its clock, to the nearest.
 constexpr std::uint32_t baud_divisor(std::uint32_t baud) { return (kClockHz + baud / 2) / baud; }
 

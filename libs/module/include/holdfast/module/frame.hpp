@@ -8,7 +8,8 @@
 
 #include "holdfast/agent/wire.hpp"
 
-/// Packets as bytes on a serial line, framed as on Blinky Blocks 2:
+/// Packets as bytes on a serial line, framed in the manner of Blinky Blocks 2 but with
+/// marks of our own:
 ///
 ///     '~'  kind, 0, size low, size high  payload  checksum low, checksum high  '.'
 ///

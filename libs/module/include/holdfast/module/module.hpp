@@ -62,9 +62,15 @@ class Module {
   /// Does what there is to do, then waits for more.
   void run_once();
 
+  /// From outside: a module is planned at a cell, or no more; agent::kEveryCell withdraws all.
+  void plan(const base::Cell& cell) { tell(agent::EventKind::kPlan, cell); }
+
+  void withdraw(const base::Cell& cell) { tell(agent::EventKind::kWithdraw, cell); }
+
   const Status& status() const { return status_; }
 
  private:
+  void tell(agent::EventKind kind, const base::Cell& cell);
   void step(agent::EventKind kind, int face = 0);
   void recall_plans();
   void keep_plans();
