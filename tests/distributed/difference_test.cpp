@@ -56,8 +56,7 @@ model::RobotSpec random_tree(const base::Lattice& lattice, std::uint64_t seed) {
 /// The stated error, and the rounding of messages besides, bound the distance to the exact answer
 /// where there is no loop; a second fixed module, or a foot beside the fixed one, makes a loop.
 TEST(ErrorKind, is_a_bound_just_where_balance_alone_gives_the_forces) {
-  constexpr agent::Method kMethods[] = {agent::Method::kElimination, agent::Method::kFronts,
-                                        agent::Method::kPolynomial};
+  constexpr agent::Method kMethods[] = {agent::Method::kElimination, agent::Method::kFronts};
   constexpr double kRounding = 2e-7;
   int count = 0;
   for (const base::Lattice& lattice : test::kLattices) {
@@ -65,7 +64,7 @@ TEST(ErrorKind, is_a_bound_just_where_balance_alone_gives_the_forces) {
       SCOPED_TRACE(::testing::Message() << lattice.direction_count << " directions, seed " << seed);
       model::RobotSpec spec = random_tree(lattice, seed);
       const Answers tree = answers_of(test::robot_of(test::with_last_planned(spec, seed % 3)),
-                                      {.method = kMethods[seed % 3]});
+                                      {.method = kMethods[seed % 2]});
       EXPECT_EQ(tree.robot.error_kind, ErrorKind::kBound);
       EXPECT_EQ(tree.robot.difference, Difference::kNone);
       if (const auto ratio = load_ratio_max(tree.robot.result.answer)) {

@@ -3,7 +3,7 @@
 //
 // What changes after a verdict. A module that is told of a plan, or finds a new neighbour,
 // withdraws its verdict and tells the root, which begins the next one from what all modules keep
-// (conductor_renewal.cpp). Whatever does not fit, here or on the way, is left to a new round.
+// (conductor/renewal.hpp). Whatever does not fit, here or on the way, is left to a new round.
 #include "holdfast/agent/agent.hpp"
 #include "holdfast/agent/deflation.hpp"
 #include "kept_changes.hpp"

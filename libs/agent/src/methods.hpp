@@ -16,7 +16,7 @@ inline constexpr bool kHasAllMethods = false;
 inline constexpr bool kHasAllMethods = true;
 #endif
 
-/// Can a verdict be renewed from what is kept (conductor_renewal.cpp)? It takes 6 KB of flash, and
+/// Can a verdict be renewed from what is kept (conductor/renewal.hpp)? It takes 6 KB of flash, and
 /// is left out with HOLDFAST_AGENT_STARTS_AFRESH: every change is a new round then.
 #ifdef HOLDFAST_AGENT_STARTS_AFRESH
 inline constexpr bool kKeepsAnswers = false;
@@ -44,7 +44,7 @@ constexpr bool is_resume(wire::Operation operation) {
 /// Can free faces be judged (free_faces.hpp)? Left out together with the above.
 inline constexpr bool kJudgesFaces = kKeepsAnswers;
 
-/// Are further solutions of the regularised law sought (conductor_seeking.cpp)? Left out together
+/// Are further solutions of the regularised law sought (conductor/seeking.hpp)? Left out together
 /// with fronts.
 inline constexpr bool kSeeksOthers = kHasAllMethods;
 

@@ -143,7 +143,7 @@ std::vector<VectorXd> conjugate_gradients(const Model& model, const MatrixXd& in
   return iterates;
 }
 
-/// The modules, and what a root does with their reports (conductor_iterations.cpp).
+/// The modules, and what a root does with their reports (conductor/iterations.cpp).
 class Robot {
  public:
   /// A solve begins from `u`; null: without changes.
