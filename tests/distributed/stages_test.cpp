@@ -449,6 +449,24 @@ TEST(Stages, what_hangs_on_a_carrier_loads_it_by_its_lever) {
   EXPECT_NEAR(stages.answer(agent::Stage::kShift).load_ratio_max, weight / 11.98, 0.001);
 }
 
+/// Rounds of later stages count from the root's cell as the first one does.
+TEST(Stages, do_not_depend_on_where_the_origin_is) {
+  const auto judged = [](std::int32_t x) {
+    model::RobotSpec spec{
+        .existing = {{x, 0, 0}, {x + 1, 0, 0}, {x, 0, 1}, {x, 0, 2}, {x + 1, 0, 2}}};
+    const model::Step step{.moves = {{.from = {x + 1, 0, 2}, .to = {x, 0, 3}}}};
+    const RobotState robot(spec);
+    return simulate_step(robot, step, plan::find_transition(robot, step).value(), {}).value();
+  };
+  const SimulatedStep near = judged(0);
+  const SimulatedStep far = judged(base::kCoordinateMax - 1);
+  for (std::size_t i = 0; i < near.stages.size(); ++i) {
+    EXPECT_EQ(near.stages[i].verdict, agent::Verdict::kSafe);
+    EXPECT_EQ(far.stages[i].verdict, agent::Verdict::kSafe);
+    EXPECT_EQ(far.stages[i].load_ratio_max, near.stages[i].load_ratio_max);
+  }
+}
+
 /// A module of 0.2 kg that carries 1 N loads its carrier by its weight and this force.
 TEST(Stages, what_hangs_on_a_carrier_loads_it_by_what_it_weighs_and_carries) {
   const double load = 0.2 * 9.81 + 1;

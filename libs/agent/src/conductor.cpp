@@ -580,7 +580,8 @@ Order Conductor::after_stage(const Setup& setup, const Report& report, const Sta
                           !whole.effort.is_unilateral && !iterations.clusters.has &&
                           !iterations.clusters.may_begin(whole);
   if (stages.stage() == Stage::kConnect || !can_resume) {
-    return begin(setup, whole.root, whole.census, whole.depth, lent);
+    const base::Cell root = whole.root;  // Begin() resets the one that is kept.
+    return begin(setup, root, whole.census, whole.depth, lent);
   }
   whole.is_resumed = true;
   renewal.has_factors = false;
