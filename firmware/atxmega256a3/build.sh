@@ -18,12 +18,14 @@ flags=(--target=avr -mmcu=atxmega256a3 -std=c++20 -Os -DNDEBUG -ffreestanding -f
        -isystem /usr/lib/avr/include
        "-fmacro-prefix-map=$root/=")  # The image must not depend on where it is built.
 for room in base mechanics agent module; do
-  flags+=("-I$rooms/$room/include")
+  flags+=("-I$rooms/$room/include" "-I$rooms/$room/src")
 done
 mkdir -p "$out"
 objects=()
-for source in "$rooms"/{mechanics,agent,module}/src/*.cpp "$here/main.cpp"; do
-  object=$out/$(basename "$(dirname "$(dirname "$source")")")_$(basename "$source" .cpp).o
+for source in "$rooms"/{mechanics,agent,module}/src/*.cpp "$rooms"/agent/src/conductor/*.cpp \
+  "$here/main.cpp"; do
+  object=${source#"$root/"}
+  object=$out/$(tr / _ <<<"${object%.cpp}").o
   if [ "$source" -nt "$object" ] || [ -n "$(find "$rooms"/{base,mechanics,agent,module} \
       -name '*.hpp' -newer "$object" -print -quit)" ]; then
     clang++-14 "${flags[@]}" -c "$source" -o "$object"

@@ -12,6 +12,7 @@ _holdfast() {
       case $previous in
         --robot) : ;;
         --lattice) : ;;
+        --set) : ;;
         --json) files=1 ;;
         --connections) : ;;
         --csv) files=1 ;;
@@ -22,31 +23,33 @@ _holdfast() {
         --limit-seconds) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --allow-unknown --json --connections --csv --svg --vtk --html --certificate --prove --limit --limit-seconds -q --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --json --connections --csv --svg --vtk --html --certificate --prove --limit --limit-seconds -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     steps)
       case $previous in
         --robot) : ;;
         --lattice) : ;;
+        --set) : ;;
         --json) files=1 ;;
         --svg) files=1 ;;
         --html) files=1 ;;
         --vtk) files=1 ;;
         --threads) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --allow-unknown --json --svg --html --vtk --until-unsafe --verify -q --quiet --threads"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --json --svg --html --vtk --until-unsafe --verify -q --quiet --threads"; else files=1; fi ;;
       esac
       ;;
     next)
       case $previous in
         --robot) : ;;
         --lattice) : ;;
+        --set) : ;;
         --json) files=1 ;;
         --svg) files=1 ;;
         --limit) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --allow-unknown --json --svg --limit -q --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --json --svg --limit -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     order)
@@ -64,7 +67,8 @@ _holdfast() {
         --certificate) files=1 ;;
         --robot) : ;;
         --lattice) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --from --reach --source --group --reverse --seed --exact --seconds --help-seconds --threads -q --quiet -o --output --json --certificate --robot --lattice --allow-unknown"; else files=1; fi ;;
+        --set) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --from --reach --source --group --reverse --seed --exact --seconds --help-seconds --threads -q --quiet -o --output --json --certificate --robot --lattice --set --allow-unknown"; else files=1; fi ;;
       esac
       ;;
     move)
@@ -78,13 +82,15 @@ _holdfast() {
         --verify) files=1 ;;
         --robot) : ;;
         --lattice) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --pivot --within --geometry-only --seed --seconds --threads -q --quiet -o --output --json --verify --robot --lattice --allow-unknown"; else files=1; fi ;;
+        --set) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --pivot --within --geometry-only --seed --seconds --threads -q --quiet -o --output --json --verify --robot --lattice --set --allow-unknown"; else files=1; fi ;;
       esac
       ;;
     simulate)
       case $previous in
         --robot) : ;;
         --lattice) : ;;
+        --set) : ;;
         --method) words="auto elimination fronts polynomial" ;;
         --link) words="v1 v2 catoms unit" ;;
         --seed) : ;;
@@ -104,13 +110,14 @@ _holdfast() {
         --trace) files=1 ;;
         --story) files=1 ;;
         --svg) files=1 ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --allow-unknown --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --steps --stages --next --json --connections --trace --story --svg -q --quiet"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --steps --stages --next --json --connections --trace --story --svg -q --quiet"; else files=1; fi ;;
       esac
       ;;
     emulate)
       case $previous in
         --robot) : ;;
         --lattice) : ;;
+        --set) : ;;
         --board) words="v2 v1" ;;
         --image) files=1 ;;
         --pages) files=1 ;;
@@ -126,14 +133,15 @@ _holdfast() {
         --json) files=1 ;;
         --connections) : ;;
         --svg) files=1 ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --allow-unknown --board --image --pages --seed --kill --reset --cut --flip --plan --withdraw --attach --time --json --connections --svg -q --quiet"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --board --image --pages --seed --kill --reset --cut --flip --plan --withdraw --attach --time --json --connections --svg -q --quiet"; else files=1; fi ;;
       esac
       ;;
     convert)
       case $previous in
         --robot) : ;;
         --lattice) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --allow-unknown"; else files=1; fi ;;
+        --set) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown"; else files=1; fi ;;
       esac
       ;;
     generate)
@@ -152,8 +160,9 @@ _holdfast() {
       case $previous in
         --robot) : ;;
         --lattice) : ;;
+        --set) : ;;
         --out) files=1 ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --allow-unknown --out --no-open"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --out --no-open"; else files=1; fi ;;
       esac
       ;;
   esac
