@@ -41,9 +41,9 @@ TEST(Setting, of_each_number_of_the_material_is_that_of_a_file) {
   for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
     const std::string key(parameter.key);
     const auto set = accepted(
-        read_json(file(R"("material": {"mass_kg": 0.1})"), with({key + "=0.25", "mass_kg=0.3"})));
+        read_json(file(R"("material": {"mass_kg": 0.1})"), with({key + "=0.05", "mass_kg=0.3"})));
     const std::string said =
-        key == "mass_kg" ? R"("mass_kg": 0.3)" : R"("mass_kg": 0.3, ")" + key + R"(": 0.25)";
+        key == "mass_kg" ? R"("mass_kg": 0.3)" : R"("mass_kg": 0.3, ")" + key + R"(": 0.05)";
     EXPECT_EQ(set.document, accepted(read_json(file(R"("material": {)" + said + "}"))).document)
         << key;
   }
