@@ -224,11 +224,11 @@ TEST(Orders, follow_each_other_as_the_document_says) {
   }
   // Every row is taken. Not all that it has are seen: feet without a state are rare.
   std::size_t shown = 0;
-  for (const auto& [before, after] : table) {
-    shown += seen.contains({before, after}) ? 1 : 0;
+  for (const auto& row : table) {
+    shown += seen.contains(row) ? 1 : 0;
     const bool is_taken =
-        std::ranges::any_of(seen, [&](const auto& pair) { return pair.first == before; });
-    EXPECT_TRUE(is_taken || test::kIsShort) << before;
+        std::ranges::any_of(seen, [&](const auto& pair) { return pair.first == row.first; });
+    EXPECT_TRUE(is_taken || test::kIsShort) << row.first;
   }
   EXPECT_GT(shown, (test::kIsShort ? 2 : 3) * table.size() / 4);
 }
