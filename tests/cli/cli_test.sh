@@ -332,6 +332,7 @@ expect_usage "^Try 'holdfast check --help'\.\$" check
 expect_usage "^holdfast check: there is no option '--jsn'; did you mean '--json'\?\$" \
   check a --jsn b
 expect_usage "^holdfast check: there is no option '--x'\$" check a --x=1
+expect_usage "^holdfast: there is no option '--versoin'; did you mean '--version'" --versoin
 expect_usage "^holdfast next: the argument 'b' is not expected\$" next a b
 expect_usage "^holdfast check: --json has no value, expected FILE\$" check a --json
 expect_usage "^holdfast check: --memory: expected a number from 0.01 to 1024, found 0\$" \

@@ -256,9 +256,11 @@ std::string HelpFormatter::make_help(const CLI::App* app, std::string /*name*/,
 
 std::string usage_error(const CLI::App& app, const CLI::Error& error) {
   const CLI::App& command = asked(app);
-  const std::string what = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError)
-                               ? unexpected(command)
-                               : reworded(error.what());
+  // CLI11 says first that a command is missing.
+  const bool is_unexpected =
+      error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError) ||
+      (&command == &app && !command.remaining().empty());
+  const std::string what = is_unexpected ? unexpected(command) : reworded(error.what());
   return fmt::format("{0}: {1}\nTry '{0} --help'.\n", full_name(command), what);
 }
 

@@ -31,7 +31,7 @@ bool is_command(const CLI::App& app, const std::string& name) {
 
 /// holdfast help [COMMAND].
 int show_help(const CLI::App& app, int argc, char** argv) {
-  const std::string name = argc > 2 ? argv[2] : "";
+  const std::string name = argc > 2 && std::string(argv[2]) != "help" ? argv[2] : "";
   if (!name.empty() && !is_command(app, name)) {
     std::fputs(cli::unknown_command(app, name).c_str(), stderr);
     return holdfast::kExitUsage;

@@ -6,11 +6,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 
 #include "holdfast/io/near_miss.hpp"
 #include "holdfast/io/report.hpp"
+#include "numbers.hpp"
 #include "vocabulary.hpp"
 
 namespace holdfast::io {
@@ -32,14 +31,6 @@ bool is_class_strength(std::string_view key) {
   return std::ranges::find(kClassStrengthKeys, key) != kClassStrengthKeys.end();
 }
 
-std::optional<double> number_of(std::string_view text) {
-  double value = 0;
-  const char* const end = text.data() + text.size();
-  const auto read = std::from_chars(text.data(), end, value);
-  const bool is_number = read.ec == std::errc{} && read.ptr == end && std::isfinite(value);
-  return is_number ? std::optional(value) : std::nullopt;
-}
-
 base::Error unknown_key(std::string_view key) {
   std::vector<std::string_view> names(kConnectorKeys.begin(), kConnectorKeys.end());
   for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
@@ -56,7 +47,7 @@ base::Error unknown_key(std::string_view key) {
 base::Result<Setting> find_setting(std::string_view text) {
   const std::size_t mark = text.find('=');
   const auto value =
-      mark == std::string_view::npos ? std::nullopt : number_of(text.substr(mark + 1));
+      mark == std::string_view::npos ? std::nullopt : parse_number<double>(text.substr(mark + 1));
   if (!value) {
     return base::bad_input("expected KEY=NUMBER, such as strength_lateral_n=12");
   }
