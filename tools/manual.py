@@ -177,7 +177,7 @@ def whole_page(program, summary, pages, version, other):
     page = pages['']
     text = roff_head(program, version, summary)
     text += f'.SH SYNOPSIS\n.B {roff(program)}\nCOMMAND [OPTIONS] ARGUMENTS\n'
-    text += f'.SH DESCRIPTION\n{roff(page.summary)}\n' + roff_preformatted(page.notes)
+    text += f'.SH DESCRIPTION\n{roff(page.summary)}.\n' + roff_preformatted(page.notes)
     text += roff_section('OPTIONS', roff_list(page.options())) + '.SH COMMANDS\n'
     for command in page.commands():
         one = pages[command.names[0]]

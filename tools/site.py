@@ -64,7 +64,7 @@ def lay_documents(docs, folder):
 
 def commands_of(program):
     listed = subprocess.run([program, '--help'], capture_output=True, text=True, check=True).stdout
-    body = listed[listed.index('Subcommands:'):].split('\n')[1:]
+    body = listed[listed.index('Commands:'):].split('\n')[1:]
     return [line.split()[0] for line in body if re.match(r'  \w', line)]
 
 

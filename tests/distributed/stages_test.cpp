@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
 #include <vector>
 
 #include "general_robot.hpp"
@@ -282,7 +283,7 @@ void compare(RandomSpec random_spec, std::uint64_t seed, Tally& tally) {
       robot = near_limit(robot, step, transition.value(), seed);
     }
     const auto judged =
-        simulate_step(robot, step, transition.value(), {.method = kMethods[seed % 4]});
+        simulate_step(robot, step, transition.value(), {.method = kMethods[seed % std::size(kMethods)]});
     ASSERT_TRUE(judged.has_value()) << judged.error().message;
     EXPECT_TRUE(judged.value().all_agree);
     ++tally.steps;
