@@ -282,8 +282,8 @@ void compare(RandomSpec random_spec, std::uint64_t seed, Tally& tally) {
     if (!robot.surroundings().kinds.empty()) {
       robot = near_limit(robot, step, transition.value(), seed);
     }
-    const auto judged =
-        simulate_step(robot, step, transition.value(), {.method = kMethods[seed % std::size(kMethods)]});
+    const auto judged = simulate_step(robot, step, transition.value(),
+                                      {.method = kMethods[seed % std::size(kMethods)]});
     ASSERT_TRUE(judged.has_value()) << judged.error().message;
     EXPECT_TRUE(judged.value().all_agree);
     ++tally.steps;
