@@ -102,6 +102,7 @@ read -ra libraries < <(pkg-config --libs holdfast)
 "$compiler" "$work/module.o" "${libraries[@]}" -o "$work/module"
 code=0
 LD_LIBRARY_PATH=$(dirname "$library") "$work/module" "$here/main.cpp" 2>"$work/log" || code=$?
-[ $code -eq 65 ] && grep -q "no configuration of this version" "$work/log" ||
+if [ $code -ne 65 ] || ! grep -q "no configuration of this version" "$work/log"; then
   fault "on_terminals takes a page that is none: exit $code, $(cat "$work/log")"
+fi
 echo "consumer: installed, moved, linked in five ways"
