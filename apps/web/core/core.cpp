@@ -545,9 +545,11 @@ std::string simulation_summary(const DistributedRun& run, bool is_complete) {
   json.member("ticks_per_second", run.link.ticks_per_second);
   json.key("orders");
   json.begin_array();
-  write_order(json, "", false);  // 0 is no operation.
-  for (const agent::OperationInfo& row : agent::kOperations) {
-    write_order(json, row.text, row.is_iteration);
+  // By number: at numbers that are no operation there is an empty text.
+  const auto texts = agent::column(&agent::OperationInfo::text);
+  const auto iterations = agent::column(&agent::OperationInfo::is_iteration);
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    write_order(json, texts[i] != nullptr ? texts[i] : "", iterations[i]);
   }
   json.end_array();
   json.end_object();
