@@ -337,7 +337,7 @@ Command add_check(CLI::App& app) {
            .exits = {{kExitSafe, "all structures are safe"},
                      {kExitUnsafe, "any structure is unsafe: overload or unstable"},
                      {kExitUndecided, "none is unsafe, but any is undecided"},
-                     {kExitBadInput, "an input cannot be read, or an output not written"}}}};
+                     kUnreadable}}};
 }
 
 }  // namespace holdfast::cli

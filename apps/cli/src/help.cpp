@@ -270,9 +270,8 @@ std::string unknown_command(const CLI::App& app, std::string_view argument) {
     names.push_back(command->get_name());
   }
   const std::string near = did_you_mean(argument, names);
-  return fmt::format(
-      "holdfast: there is no command '{}'{}\n", io::one_line(argument),
-      !near.empty() ? near : "; there are " + fmt::format("{}", fmt::join(names, ", ")));
+  return fmt::format("holdfast: there is no command '{}'{}\n", io::one_line(argument),
+                     !near.empty() ? near : fmt::format("; there are {}", fmt::join(names, ", ")));
 }
 
 }  // namespace holdfast::cli

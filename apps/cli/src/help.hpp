@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "holdfast/exit_code.hpp"
+
 /// What --help and wrong usage say, for all commands alike: examples first, text wrapped at the
 /// terminal's width, one notation of defaults, exit codes as a list; and "did you mean".
 namespace holdfast::cli {
@@ -21,6 +23,10 @@ struct ExitCode {
   int code = 0;
   std::string_view meaning;
 };
+
+/// The meaning of 65 for commands that read structures and write nothing but what options name.
+inline constexpr ExitCode kUnreadable = {kExitBadInput,
+                                         "an input cannot be read, or an output not written"};
 
 /// What the help of a command says beside its arguments and options.
 struct Help {

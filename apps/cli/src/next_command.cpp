@@ -121,7 +121,7 @@ Command add_next(CLI::App& app) {
            .exits = {{kExitSafe, "a place is safe"},
                      {kExitUnsafe, "no place is safe"},
                      {kExitUndecided, "no place is known to be safe, but some are undecided"},
-                     {kExitBadInput, "an input cannot be read, or an output not written"}}}};
+                     kUnreadable}}};
 }
 
 }  // namespace holdfast::cli

@@ -283,7 +283,7 @@ Command add_order(CLI::App& app) {
                      {kExitUndecided,
                       "no order is found: time, an interrupt or undecided "
                       "states ended the search"},
-                     {kExitBadInput, "an input cannot be read, or an output not written"}}}};
+                     kUnreadable}}};
 }
 
 }  // namespace holdfast::cli

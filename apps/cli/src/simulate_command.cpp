@@ -401,7 +401,7 @@ Command add_simulate(CLI::App& app) {
            .exits = {{kExitSafe, "the robot says safe"},
                      {kExitUnsafe, "the robot says overload or unstable"},
                      {kExitUndecided, "the robot says undecided"},
-                     {kExitBadInput, "an input cannot be read, or an output not written"}}}};
+                     kUnreadable}}};
 }
 
 }  // namespace holdfast::cli
