@@ -87,7 +87,7 @@ Time Stm32f4Port::now() {
   return Time{before} * 1000 + part;
 }
 
-/// From the time, which QEMU takes from the host's.
+/// Mixes the time, which QEMU takes from the host's, and a count of the calls.
 std::uint16_t Stm32f4Port::random() {
   const std::uint32_t mixed = (++calls_ + systick().CVR) * 0x9e3779b1U;
   return static_cast<std::uint16_t>(mixed >> 16U);
