@@ -15,7 +15,8 @@
 /// solved by an interior-point method. Derivation: docs/limit.md.
 namespace holdfast::limit {
 
-/// Factors beyond this are not told apart from none: known forces have about six digits.
+/// Factors beyond this are not distinguished from an infinite one: known forces have about six
+/// digits.
 inline constexpr double kFactorMax = 1e5;
 
 struct LimitOptions {
