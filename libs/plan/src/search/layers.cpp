@@ -52,7 +52,7 @@ std::vector<std::int64_t> distances_from(const model::Robot& robot,
   return distance;
 }
 
-/// By module of a layer.
+/// The offsets of a layer's modules, in its order.
 std::vector<Offset> offsets_from_middle(const model::Robot& robot,
                                         const std::vector<std::size_t>& layer) {
   std::vector<Offset> offsets;
