@@ -346,7 +346,7 @@ class Coarsening {
     }
   }
 
-  /// From the order along the curve to the order by colours.
+  /// Changes from the order along the curve to the order by colours.
   void renumber(unsigned shift) {
     coarse_.order = final_;
     coarse_.key.resize(cluster_count_);

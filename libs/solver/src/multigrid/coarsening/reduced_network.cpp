@@ -130,7 +130,7 @@ class Builder {
       return is_along_axes() ? kNoColour : chessboard(item);
     }
 
-    /// Of what its beams lead to, that comes before a module which has the lower coordinates.
+    /// Whether a neighbour comes before an item: the one with the lower coordinates does.
     bool is_before(std::size_t place, std::size_t item) const {
       return sum(place) < sum(at(module(item)));
     }
@@ -249,7 +249,7 @@ class Builder {
     }
   }
 
-  /// Whose copies those nodes are that are not this rank's own.
+  /// Finds whose copies those nodes are that are not this rank's own.
   void copy() {
     if (!robot_.ranks().is_shared()) {
       return;

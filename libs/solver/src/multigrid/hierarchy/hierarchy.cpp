@@ -300,7 +300,7 @@ void Hierarchy<Real>::share(const SpringGraph& graph, Level<Real>& level) const 
   }
 }
 
-/// Makes a level whole at all ranks. What it hangs on stays in parts.
+/// Makes a level whole at all ranks. The finer ones stay in parts.
 template <class Real>
 void Hierarchy<Real>::gather(SpringGraph& graph, std::vector<GroundSpring>& springs,
                              std::vector<std::size_t>& colour_start) {
