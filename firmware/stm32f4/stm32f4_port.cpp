@@ -143,8 +143,8 @@ void Stm32f4Port::sleep(Time until) {
 
 using Handler = void (*)();
 
-/// Behind the first 16 vectors: those of the chip's interrupts (RM0090, table 61). SysTick is the
-/// last of the 16.
+/// The vectors of the chip's interrupts come behind the first 16 (RM0090, table 61), the last of
+/// which is SysTick.
 extern "C" {
 extern const Handler holdfast_tick;
 extern const std::array<Handler, 72> holdfast_interrupts;

@@ -25,7 +25,7 @@ constexpr Time kNoticeTime = 300'000;
 /// A module that faults shows it for 2 s, until its watchdog starts it again.
 constexpr Time kRestartTime = 2'500'000;
 
-/// Ten bits on a line.
+/// The time of a byte, ten bits, on a line.
 constexpr Cycles byte_cycles(std::uint32_t baud) {
   return Cycles{10} * boards::stm32f0::baud_divisor(baud);
 }

@@ -66,7 +66,7 @@ void expect_near(const std::vector<Vec6<double>>& a, const std::vector<Vec6<doub
   }
 }
 
-/// Bytes.
+/// Memory for all columns, bytes.
 constexpr std::size_t kEnough = std::size_t{1} << 29U;
 
 std::vector<std::size_t> all_modules(const model::Robot& robot) {

@@ -342,8 +342,8 @@ BlockLu symmetric_lattice(base::Rng& rng, std::size_t node_count, std::span<cons
   return lu;
 }
 
-/// Against factors that never were symmetric: where nothing changed, with changes that are not yet
-/// factorized, and with unsymmetric blocks from then on.
+/// The results are those of factors that never were symmetric: where nothing changed, with changes
+/// that are not yet factorized, and with unsymmetric blocks from then on.
 TEST(BlockLu, gives_up_symmetry_and_takes_it_up_again) {
   const std::vector<Edge> edges = lattice(4, 3, 3);
   for (const bool is_changed_before : {false, true}) {
@@ -411,7 +411,7 @@ TEST(BlockLu, solves_lanes_to_the_bits_of_one_after_another) {
   }
 }
 
-/// Against solutions for unit vectors.
+/// The blocks are parts of the solutions for unit vectors.
 TEST(BlockLu, gives_blocks_of_the_inverse_of_a_symmetric_matrix) {
   base::Rng rng(6);
   const std::vector<Edge> edges = lattice(3, 3, 3);

@@ -123,7 +123,7 @@ void EnergyBound::choose_way(std::size_t module) {
   node.root = has_root(module) ? module : nodes_[base::at(node.way.to)].root;
 }
 
-/// Moves until it is in balance, all others staying where they are.
+/// Moves a module until it is in balance, all others staying where they are.
 void EnergyBound::take_place(std::size_t module) {
   local_.insert(module);
   u_[module] = block_product(local_.stiffness(module).inverse, local_.pull(module, u_));
@@ -453,8 +453,8 @@ bool EnergyBound::are_pressed(double radius) {
   return are_all;
 }
 
-/// Below 1 where a facet stays stuck, as its adjoint shows, if the displacements are off
-/// by the energy error at most: how much of what it lacks to tilting it may be off by.
+/// What a facet may be off by as a share of what it lacks to tilting, by its adjoint, if the
+/// displacements are off by the energy error at most: it stays stuck below 1.
 double EnergyBound::strain_by_adjoint(std::size_t index) {
   constexpr double kUnknown = std::numeric_limits<double>::infinity();
   const model::Facet& facet = target_.facets()[index];

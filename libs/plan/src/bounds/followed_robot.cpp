@@ -158,7 +158,7 @@ void FollowedRobot::relax(const std::vector<std::size_t>& modules) {
   }
 }
 
-/// New modules but for so many.
+/// All new modules but the first so many.
 std::vector<std::size_t> FollowedRobot::modules_from(std::size_t first) const {
   std::vector<std::size_t> modules;
   for (std::size_t i = first; i < new_.size(); ++i) {

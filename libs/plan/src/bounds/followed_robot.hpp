@@ -62,7 +62,7 @@ class FollowedRobot {
   /// Comes nearer than solve(), which asks for it once where that is sure to pay.
   std::optional<Result> improve();
 
-  /// Multigrid's, in all solutions.
+  /// The iterations of multigrid in all solutions.
   int iteration_count() const { return iteration_count_; }
 
  private:

@@ -32,7 +32,7 @@ constexpr std::size_t kFollowedMin = 256;
 /// sought.
 constexpr std::size_t kSectionMin = 6;
 
-/// Each costs another solution that follows.
+/// The most improvements of a state, each of which costs another solution that follows.
 constexpr int kImprovementMax = 2;
 
 /// The adjoint of a facet that has left so many states of a run without a bound, alone or with
@@ -41,7 +41,7 @@ constexpr int kImprovementMax = 2;
 constexpr int kDoubtMin = 32;
 constexpr std::size_t kAdjointCountMax = 16;
 
-/// Where no support polygon decides.
+/// What bending may move the centre of mass by where no support polygon decides.
 constexpr double kNoEdge = std::numeric_limits<double>::infinity();
 
 }  // namespace

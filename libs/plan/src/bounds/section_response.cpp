@@ -64,7 +64,7 @@ std::vector<std::size_t> in_order(const model::Robot& target, std::vector<std::s
 
 }  // namespace
 
-/// Layer by layer from the supports, as long as each is small.
+/// Looks layer by layer from the supports, as long as each is small.
 std::vector<std::size_t> find_section(const model::Robot& target, const ElementSet& state) {
   if (!pulls_straight_down(target)) {
     return {};

@@ -34,7 +34,7 @@ class ChangedForces {
   /// beam or facet there.
   Vec middle(const Vec& load, std::size_t module, int direction) const;
 
-  /// Nothing has changed.
+  /// Forgets all changes.
   void clear();
 
   /// |s - h w|^2 of all that was weighed.

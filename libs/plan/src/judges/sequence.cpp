@@ -107,7 +107,7 @@ class Run {
  private:
   static constexpr std::size_t kChunk = host::Team::kChunk;
 
-  /// One that is not in use; what it has kept of other steps serves again.
+  /// Takes a judge that is not in use; what it has kept of other steps serves again.
   std::unique_ptr<StageJudge> take_judge() {
     const std::lock_guard lock(mutex_);
     if (judges_.empty()) {

@@ -21,7 +21,7 @@ constexpr std::size_t kOpenMax = 64;
 /// Squares of lengths in pitches that differ by less are the same: rounding must not decide.
 constexpr double kTie = 1e-6;
 
-/// Horizontal, in pitches.
+/// A horizontal vector, in pitches.
 struct Offset {
   double x = 0;
   double y = 0;

@@ -12,7 +12,7 @@
 
 namespace holdfast::plan {
 
-/// Between axial coordinates.
+/// The difference of axial coordinates.
 inline base::Cell difference(const base::Cell& a, const base::Cell& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }

@@ -74,8 +74,8 @@ class ContactIteration {
   /// Allows as much error as while states are sought.
   void loosen();
 
-  /// Once the states hold still: whether the solution is good enough to say so. If not, the next
-  /// one will be.
+  /// Whether the solution is good enough to say that the states hold still. If not, the next one
+  /// will be.
   bool is_tight_now();
 
  private:

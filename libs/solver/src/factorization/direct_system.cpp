@@ -115,7 +115,7 @@ void DirectSystem::order(const EquilibriumOptions& options) {
               Symmetry::kSymmetric);
 }
 
-/// Everything but the contact.
+/// Assembles everything but the contact.
 void DirectSystem::assemble() {
   diagonal_ = set_connections();
   for (std::size_t node = 0; node < diagonal_.size(); ++node) {

@@ -21,7 +21,7 @@ inline constexpr double kFactorMax = 1e5;
 
 struct LimitOptions {
   double tolerance = 1e-6;  ///< Of the bracket, as a share of the factor.
-  /// Then the bracket is what it is so far; an iteration that has begun is ended.
+  /// The bracket is what it is so far when this time is over; an iteration that has begun is ended.
   double seconds_max = 600;
   int thread_count = 0;  ///< 0: as many as the machine has cores; decides nothing.
   /// Forces of all joints that balance the loads, such as the elastic ones, local frame; they spare

@@ -59,7 +59,7 @@ const char* name(MoveOutcome outcome);
 /// Proves that there is no plan.
 struct MoveCertificate {
   MoveTask task;
-  /// Not safe: nothing more is to be proved, and `shapes` is empty.
+  /// The target's judgement if it is not safe: nothing more is to be proved, `shapes` is empty.
   std::optional<Judgement> target = {};
   /// Shapes, each as the cells of all modules that are not fixed, those alike together: the start
   /// is one of them, the target is none, and no safe step leads out.

@@ -163,7 +163,7 @@ class Coarsening {
     leave_alone();
   }
 
-  /// Enough for a level of its own.
+  /// Whether a tenth of the nodes is gone, enough for a level of its own.
   bool has_merged() const {
     return 10 * host::total(fine_.ranks, cluster_count_) <=
            9 * host::total(fine_.ranks, fine_.own_count());

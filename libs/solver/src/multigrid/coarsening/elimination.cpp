@@ -81,7 +81,7 @@ class Eliminator {
                                             robot_.modules()[at(other)].support == Support::kFixed);
   }
 
-  /// Leaves first, until none is left.
+  /// Eliminates leaves until none is left.
   void take_hanging() {
     result_.round_start = {0};
     for (std::size_t leaf = 0; leaf < own_count_; ++leaf) {

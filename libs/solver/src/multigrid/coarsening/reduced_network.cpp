@@ -124,8 +124,8 @@ class Builder {
 
     bool has_two_colours() const { return is_along_axes(); }
 
-    /// Not of cubes, to which first fit gives two; of all others the lattice's own, of which there
-    /// are four, if no long beam has brought it there.
+    /// The lattice's own colour, of which there are four, unless a long beam leads to the same one;
+    /// cubes, to which first fit gives two, prefer none.
     std::uint8_t preferred(std::size_t item) const {
       return is_along_axes() ? kNoColour : chessboard(item);
     }

@@ -353,7 +353,7 @@ bool ConjugateGradients<Real>::step() {
   return true;
 }
 
-/// Not where what has been gained since a mark takes memory.
+/// Whether K p is kept; not where what has been gained since a mark takes memory.
 template <class Real>
 bool ConjugateGradients<Real>::is_product_kept() const {
   const bool is_large = node_count_ > kKeptProductMax;

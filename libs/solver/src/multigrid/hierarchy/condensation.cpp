@@ -100,7 +100,7 @@ void apply_flexibility(const RunFactor& factor, std::span<Vec6<double>> load) {
   }
 }
 
-/// Does so for one run, by module. Most runs carry nothing but the common load, and bend alike.
+/// Applies the flexibility of one run. Most runs carry nothing but the common load, and bend alike.
 void apply_flexibility(const Robot& robot, const Run& run, const RunFactor& factor,
                        std::vector<Vec6<double>>& load) {
   std::array<std::size_t, kBeamLengthMax> modules{};

@@ -404,7 +404,7 @@ void Hierarchy<Real>::update_contact() {
   }
 }
 
-/// If its shape allows, or it is small.
+/// Factorizes a level if its shape allows, or it is small.
 template <class Real>
 void Hierarchy<Real>::try_to_factor(const SpringGraph& graph) {
   const std::size_t count = graph.order.size();
