@@ -7,7 +7,7 @@
 
 #include "commands.hpp"
 #include "file_clash.hpp"
-#include "holdfast/remedies.hpp"
+#include "holdfast/trial.hpp"
 #include "page.hpp"
 #include "progress.hpp"
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "holdfast/remedies.hpp"
+#include "holdfast/trial.hpp"
 
 namespace holdfast {
 namespace {

@@ -46,8 +46,8 @@ struct RemedyList {
 
 struct Remedies {
   std::array<RemedyList, kRemedyKindCount> lists = {};  ///< By kind.
-  /// For a robot that is overloaded and nothing else: were all its connections stronger by this
-  /// factor, as stiff as they are, it would be safe. Rounded up to hundredths.
+  /// The factor that makes a robot safe that is overloaded if all its connections are stronger by
+  /// it, and as stiff as they are; rounded up to hundredths. None if no such factor does.
   std::optional<double> strength_factor = {};
 
   const RemedyList& of(RemedyKind kind) const { return lists[static_cast<std::size_t>(kind)]; }

@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "holdfast/remedies.hpp"
-
 #include <fmt/format.h>
 
 #include "holdfast/base/check.hpp"
+#include "holdfast/trial.hpp"
 
 namespace holdfast {
 namespace {
