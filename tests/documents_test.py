@@ -21,8 +21,8 @@ import sys
 import tempfile
 
 DOCUMENTS = ['README.md', *(f'docs/{name}.md' for name in (
-    'first_robot', 'first_plan', 'tour', 'theory', 'solver', 'solver_evidence', 'distributed',
-    'one_sweep', 'proof', 'page', 'formats', 'plan', 'move'))]
+    'first_robot', 'first_plan', 'tour', 'theory', 'solver', 'distributed',
+    'one_sweep', 'proof', 'page', 'formats', 'plan', 'move', 'evidence/solver'))]
 # These need the firmware's compilers; tests/firmware checks what they show.
 NOT_RUN = './dev firmware'
 
