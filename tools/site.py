@@ -25,10 +25,10 @@ SECTIONS = [
      ['commands', 'formats', 'robots', 'python_api', 'cpp_api', 'wire', 'building', 'glossary']),
     ('Explanation', 'Why it works.',
      ['theory', 'general', 'limit', 'proof', 'solver', 'plan', 'next', 'order', 'move',
-      'distributed', 'one_sweep']),
+      'distributed']),
     ('Evidence', 'Measurements, each made by a command.',
-     ['evidence/solver', 'evidence/test6', 'evidence/supports', 'evidence/elastic_and_limit',
-      'evidence/printed_frames']),
+     ['evidence/solver', 'evidence/distributed', 'evidence/test6', 'evidence/supports',
+      'evidence/elastic_and_limit', 'evidence/printed_frames']),
 ]
 GENERATED = {'commands', 'python_api', 'cpp_api'}
 
