@@ -24,11 +24,10 @@ SECTIONS = [
     ('Reference', 'What there is, complete.',
      ['commands', 'formats', 'robots', 'python_api', 'cpp_api', 'wire', 'building', 'glossary']),
     ('Explanation', 'Why it works.',
-     ['theory', 'general', 'limit', 'proof', 'solver', 'plan', 'next', 'order', 'move',
-      'distributed']),
+     ['theory', 'general', 'limit', 'proof', 'solver', 'planning', 'distributed']),
     ('Evidence', 'Measurements, each made by a command.',
-     ['evidence/solver', 'evidence/distributed', 'evidence/test6', 'evidence/supports',
-      'evidence/elastic_and_limit', 'evidence/printed_frames']),
+     ['evidence/solver', 'evidence/distributed', 'evidence/planning', 'evidence/test6',
+      'evidence/supports', 'evidence/elastic_and_limit', 'evidence/printed_frames']),
 ]
 GENERATED = {'commands', 'python_api', 'cpp_api'}
 

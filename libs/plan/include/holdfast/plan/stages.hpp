@@ -10,7 +10,7 @@
 #include "holdfast/plan/transition.hpp"
 
 /// The robots that a step's stages consist of, each to be judged by itself; what the stages are is
-/// told in docs/plan.md.
+/// told in docs/planning.md.
 namespace holdfast::plan {
 
 /// A group that hangs on one carrier alone.
