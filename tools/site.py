@@ -26,8 +26,9 @@ SECTIONS = [
     ('Explanation', 'Why it works.',
      ['theory', 'general', 'limit', 'proof', 'solver', 'planning', 'distributed']),
     ('Evidence', 'Measurements, each made by a command.',
-     ['evidence/solver', 'evidence/distributed', 'evidence/planning', 'evidence/test6',
-      'evidence/supports', 'evidence/elastic_and_limit', 'evidence/printed_frames']),
+     ['evidence/solver', 'evidence/distributed', 'evidence/planning', 'evidence/cluster',
+      'evidence/test6', 'evidence/supports', 'evidence/elastic_and_limit',
+      'evidence/printed_frames']),
 ]
 GENERATED = {'commands', 'python_api', 'cpp_api'}
 
