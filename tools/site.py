@@ -27,7 +27,7 @@ SECTIONS = [
      ['theory', 'general', 'limit', 'proof', 'solver', 'planning', 'distributed']),
     ('Evidence', 'Measurements, each made by a command.',
      ['evidence/solver', 'evidence/distributed', 'evidence/planning', 'evidence/cluster',
-      'evidence/test6', 'evidence/supports', 'evidence/elastic_and_limit',
+      'evidence/firmware', 'evidence/test6', 'evidence/supports', 'evidence/elastic_and_limit',
       'evidence/printed_frames']),
 ]
 GENERATED = {'commands', 'python_api', 'cpp_api'}
