@@ -27,8 +27,9 @@ SECTIONS = [
      ['theory', 'general', 'limit', 'proof', 'solver', 'planning', 'distributed']),
     ('Evidence', 'Measurements, each made by a command.',
      ['evidence/solver', 'evidence/distributed', 'evidence/planning', 'evidence/cluster',
-      'evidence/firmware', 'evidence/test6', 'evidence/supports', 'evidence/elastic_and_limit',
-      'evidence/printed_frames']),
+      'evidence/firmware', 'evidence/visiblesim', 'evidence/page', 'evidence/python',
+      'evidence/proof', 'evidence/limit', 'evidence/elastic_and_limit', 'evidence/supports',
+      'evidence/test6', 'evidence/printed_frames']),
 ]
 GENERATED = {'commands', 'python_api', 'cpp_api'}
 
