@@ -28,8 +28,8 @@ SECTIONS = [
     ('Evidence', 'Measurements, each made by a command.',
      ['evidence/solver', 'evidence/distributed', 'evidence/planning', 'evidence/cluster',
       'evidence/firmware', 'evidence/visiblesim', 'evidence/page', 'evidence/python',
-      'evidence/proof', 'evidence/limit', 'evidence/elastic_and_limit', 'evidence/supports',
-      'evidence/test6', 'evidence/printed_frames']),
+      'evidence/general', 'evidence/proof', 'evidence/limit', 'evidence/elastic_and_limit',
+      'evidence/supports', 'evidence/test6', 'evidence/printed_frames']),
 ]
 GENERATED = {'commands', 'python_api', 'cpp_api'}
 
