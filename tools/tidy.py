@@ -30,8 +30,7 @@ HEAPS = {'agent': 63}  # What is to be divided yet may not grow.
 FRAGMENT = re.compile(r'(After|Also|And|As|At|Before|But|By|False|For|From|In|Its?|None|Null|'
                       r'nullptr|Of|On|So|Such|That|The same|They|Those|To|Towards|Which|Whose?|'
                       r'With|Without)\b')
-FRAGMENT_ROOMS = ('libs/agent/', 'libs/limit/', 'libs/module/', 'libs/plan/', 'libs/solver/',
-                  'extras/emulator/', 'firmware/')  # To be reworded, then taken off.
+FRAGMENT_ROOMS = ('libs/agent/',)  # To be reworded, then taken off.
 FREESTANDING = {'base', 'boards', 'mechanics', 'agent', 'module'}
 APPLICATIONS = ('apps/', 'examples/', 'python/')
 FACADE_HEADERS = {'holdfast', 'distributed', 'emulated', 'exit_code', 'file_ending', 'move',

@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "file_clash.hpp"
+#include "holdfast/trial.hpp"
 #include "page.hpp"
 #include "progress.hpp"
 
@@ -29,6 +30,7 @@ struct CheckArguments {
   bool is_bonded = false;
   bool is_proof_wanted = false;
   bool is_limit_wanted = false;
+  bool are_remedies_wanted = false;
   double limit_seconds = limit::LimitOptions{}.seconds_max;
   int thread_count = 0;
   double memory_gb = 4;
@@ -77,18 +79,40 @@ class CheckRun {
       return;
     }
     Structure structure = std::move(loaded).value();
-    if (options_.html.empty()) {  // All else needs the robot only.
+    if (options_.html.empty() && !options_.are_remedies_wanted) {  // All else needs the robot only.
       structure.document.modules = std::vector<io::ModuleEntry>();
     }
-    const CheckResult result = check(structure, check_options(structure, file));
+    const CheckOptions how = check_options(structure, file);
+    const CheckResult result = check(structure, how);
+    const auto remedies = seek_remedies(structure, result, how, file);
     ++counts_[static_cast<std::size_t>(result.assessment.verdict)];
     if (shows_text()) {
       show(structure, result, file);
+      fmt::print("{}", remedies && !is_many() ? remedies_text(*remedies) : "");
     }
     add_report([&](std::ostream& out) {
-      write_report_json(out, structure, result, report_options(options_.json));
+      write_report_json(out, structure, result, report_options(options_.json),
+                        [&](io::JsonStream& json) {
+                          if (remedies) {
+                            write_remedies_member(json, *remedies);
+                          }
+                        });
     });
     write_files(structure, result);
+  }
+
+  std::optional<plan::Remedies> seek_remedies(const Structure& structure, const CheckResult& result,
+                                              const CheckOptions& how, const std::string& file) {
+    const bool is_said = shows_text() || !options_.json.empty();
+    if (!options_.are_remedies_wanted || !is_said || result.assessment.verdict == Verdict::kSafe) {
+      return std::nullopt;
+    }
+    return find_remedies(structure, result, how, [&](std::size_t done, std::size_t count) {
+      progress_.show([&] {
+        return fmt::format("{}: {} of {} judged", io::one_line(file), done,
+                           host::counted(count, "change"));
+      });
+    });
   }
 
   void write_files(const Structure& structure, const CheckResult& result) {
@@ -315,6 +339,9 @@ Command add_check(CLI::App& app) {
                    "Most time for the limit load, s; then the report says what it lies between")
       ->check(number_between(0.0, 1e6))
       ->capture_default_str();
+  command->add_flag("--remedies", options->are_remedies_wanted,
+                    "Seek what would make an unsafe structure hold: one more module, a prop, a "
+                    "module fixed or taken away, stronger connections");
   add_quiet(*command, options->is_quiet);
   command->add_flag("--bonded", options->is_bonded,
                     "Let the ground hold like a module below would: no lifting, no tilting");
@@ -329,6 +356,7 @@ Command add_check(CLI::App& app) {
           [options] { return run(*options); },
           {.examples = {{"check arm.json", "is it safe, and which connection carries most?"},
                         {"check arm.json --svg arm.svg", "draw the loads"},
+                        {"check arm.json --remedies", "what would make it hold?"},
                         {"check *.json --quiet", "the exit status is the answer"},
                         {"check robot.xml --robot blinky-blocks --json -", "a report to read on"}},
            .notes = "Verdicts: safe, overload (a connection breaks), unstable (the robot "

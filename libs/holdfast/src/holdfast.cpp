@@ -225,8 +225,8 @@ base::Result<std::string> certificate_text(const Structure& structure, const Che
 }
 
 void write_report_json(std::ostream& out, const Structure& structure, const CheckResult& result,
-                       const io::ReportOptions& options) {
-  io::write_report_json(out, entry_of(structure, result), options);
+                       const io::ReportOptions& options, const io::MoreKeys& more) {
+  io::write_report_json(out, entry_of(structure, result), options, more);
 }
 
 std::string report_json(const Structure& structure, const CheckResult& result) {

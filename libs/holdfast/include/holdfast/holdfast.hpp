@@ -212,9 +212,10 @@ std::string report_text(const Structure& structure, const CheckResult& result,
 std::string picture_svg(const Structure& structure, const CheckResult& result);
 std::string picture_vtu(const Structure& structure, const CheckResult& result);
 
-/// Writes the JSON report into a stream, in a fixed amount of memory, however large the robot.
+/// Writes the JSON report into a stream, in a fixed amount of memory, however large the robot;
+/// `more` adds keys at its end.
 void write_report_json(std::ostream& out, const Structure& structure, const CheckResult& result,
-                       const io::ReportOptions& options = {});
+                       const io::ReportOptions& options = {}, const io::MoreKeys& more = {});
 void write_picture_vtu(std::ostream& out, const Structure& structure, const CheckResult& result,
                        const io::WriteOptions& options = {});
 

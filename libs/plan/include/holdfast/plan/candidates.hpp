@@ -35,8 +35,8 @@ std::vector<base::Cell> free_cells(const model::RobotSpec& spec);
 /// A robot with one more module.
 struct Candidate {
   base::Cell cell;
-  /// False if there is no such robot: the cell is taken, touches nothing, lies too low. The
-  /// judgement is void then.
+  /// Whether there is such a robot; not where the cell is taken, touches nothing or lies too low.
+  /// The judgement is void then.
   bool is_robot = false;
   Judgement judgement = {};
 };
@@ -85,7 +85,7 @@ class CandidateSearch {
   CandidateOptions options_;
   bool is_prepared_ = false;
   std::unique_ptr<const RobotSymmetry> symmetry_;
-  std::unique_ptr<CandidateJudge> judge_;  ///< None where only checks can tell.
+  std::unique_ptr<CandidateJudge> judge_;  ///< None where only checks decide.
 };
 
 /// All cells in one batch of a search.
