@@ -15,8 +15,9 @@
 #include "holdfast/model/robot.hpp"
 #include "holdfast/verdict/assessment.hpp"
 
-/// Moves of cubes from the definition alone (docs/plan.md), slowly and without a line of the room
-/// `plan`: every safe shape in a box by breadth-first search, every stage by verdict::assess().
+/// Moves of cubes from the definition alone (docs/planning.md), slowly and without a line of the
+/// room `plan`: every safe shape in a box by breadth-first search, every stage by
+/// verdict::assess().
 namespace holdfast::plan::brute_force {
 
 using base::Cell;

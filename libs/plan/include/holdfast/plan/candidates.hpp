@@ -16,10 +16,10 @@
 /// Where may the next module go? Every free cell beside a robot, judged as a check of the robot
 /// with a module there would, for far less than a check each.
 ///
-/// Most candidates are judged from one factorization of the robot without them (docs/next.md): a
-/// module with one neighbour is a load on it, one with several, or on the floor, is a change of low
-/// rank, and so is every facet that tilts or lifts; Newton's path over the contact states is that
-/// of the check. Where that is not certain to end as the check does, the check itself is made:
+/// Most candidates are judged from one factorization of the robot without them (docs/planning.md):
+/// a module with one neighbour is a load on it, one with several, or on the floor, is a change of
+/// low rank, and so is every facet that tilts or lifts; Newton's path over the contact states is
+/// that of the check. Where that is not certain to end as the check does, the check itself is made:
 /// supports anywhere whose forces decide stability, several solutions, the exact contact law, and a
 /// load ratio within kNearLimit of the limit. Of cells that are images of one another, as the
 /// robot is its own, one is judged.

@@ -9,8 +9,8 @@
 #include "holdfast/model/connector_law.hpp"
 #include "holdfast/plan/transition.hpp"
 
-/// The robots that a step's stages consist of, each to be judged by itself; docs/plan.md says what
-/// the stages are.
+/// The robots that a step's stages consist of, each to be judged by itself; docs/planning.md says
+/// what the stages are.
 namespace holdfast::plan {
 
 /// A group that one carrier supports alone.
