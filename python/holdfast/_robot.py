@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
@@ -50,6 +50,14 @@ def _json(head: Mapping[str, Any]) -> str:
             raise
         raise _core.Error(
             'expected finite numbers, found one that is infinite or no number') from None
+
+
+def _listed(cells: Any) -> Any:
+    """Sets, in ascending order, and what can be gone through only once, as lists, as numpy takes
+    them."""
+    if isinstance(cells, Set):
+        return sorted(cells)
+    return list(cells) if isinstance(cells, Iterator) else cells
 
 
 def _floats(what: str, given: Any) -> npt.NDArray[np.float64]:
@@ -160,7 +168,8 @@ class Robot:
     Parameters
     ----------
     cells
-        The existing modules: an (n, 3) array of integers, of any strides, or lists.
+        The existing modules: an (n, 3) array of integers, of any strides, lists, a set or a
+        generator.
     planned
         Modules that are attached in the planned step, all at once: (m, 3).
     fixed
@@ -201,6 +210,7 @@ class Robot:
                  gravity: Optional[Sequence[float]] = None,
                  material: Optional[Mapping[str, Any]] = None, robot: Optional[str] = None,
                  steps: Optional[Sequence[Any]] = None, name: str = '') -> None:
+        cells, planned, fixed = _listed(cells), _listed(planned), _listed(fixed)
         head = _head({'lattice': lattice and _core.lattice_name(lattice),
                       'obstacles': _obstacle_list(obstacles), 'kinds': kinds,
                       'loads': _load_list(loads), 'gravity_m_s2': gravity, 'material': material,

@@ -47,6 +47,16 @@ def test_lists_tuples_and_what_is_like_an_array():
         assert len(Robot(cells)) == 3
 
 
+def test_sets_in_ascending_order_and_generators():
+    cells = [(0, 0, 0), (0, 0, 1), (0, 0, 2)]
+    more = {(0, 1, 0), (-1, 0, 0)}
+    robot = Robot(cells, planned=sorted(more), fixed=cells[:1])
+    assert robot.planned.tolist()[0] == [-1, 0, 0]
+    for many in (set(cells), frozenset(cells), dict.fromkeys(cells).keys()):
+        assert Robot(many, planned=more, fixed={cells[0]}) == robot
+    assert Robot((c for c in cells), planned=iter(sorted(more)), fixed=iter(cells[:1])) == robot
+
+
 NOT_CELLS = [
     None, 3, 'text', {}, object(), [[0, 0]], [[0, 0, 0, 0]], [0, 0, 0], [[[0, 0, 0]]],
     [[0.5, 0, 0]], [[float('nan')] * 3], [[float('inf'), 0, 0]], [['a', 'b', 'c']], [[0, 0, None]],
