@@ -101,7 +101,8 @@ void find_objects(const Json& whole, const Json& part, const Json& value,
         inner = &(*one)["items"];
       } else if (value.is_object() && one->contains("properties") &&
                  (*one)["properties"].contains(key)) {
-        inner = &(*one)["properties"][key];
+        const Json& said = (*one)["properties"][key];
+        inner = inner == nullptr || said.is_object() ? &said : inner;  // `true` says nothing.
       } else if (value.is_object() && inner == nullptr && one->contains("additionalProperties")) {
         inner = &(*one)["additionalProperties"];
       }
