@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
+#include <cerrno>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
@@ -28,8 +29,12 @@ base::Result<std::string> read_stream(std::istream& stream) {
     is_binary = is_binary || (text.empty() && block.starts_with(io::kBinaryMagic));
     const std::size_t at = is_binary ? std::string_view::npos : block.find('\0');
     if (at != std::string_view::npos) {
-      return unreadable("expected text in UTF-8, found a zero byte after " +
-                        std::to_string(text.size() + at) + " bytes");
+      const bool is_utf16 =
+          text.empty() && (block.starts_with("\xFF\xFE") || block.starts_with("\xFE\xFF"));
+      return unreadable(is_utf16 ? "expected text in UTF-8, found UTF-16: save it as UTF-8"
+                                 : "expected holdfast JSON or VisibleSim XML, text in UTF-8, found "
+                                   "a zero byte after " +
+                                       std::to_string(text.size() + at) + " bytes");
     }
     text += block;
     if (text.size() > io::kFileBytesMax) {
@@ -57,9 +62,10 @@ base::Result<std::string> read_file(const fs::path& path) {
   if (fs::is_directory(status)) {
     return unreadable("expected a file of VisibleSim XML, holdfast JSON or binary, found a folder");
   }
+  errno = 0;
   std::ifstream stream(path, std::ios::binary);
   if (!stream) {
-    return unreadable("cannot be opened for reading");
+    return unreadable("cannot be read: " + std::generic_category().message(errno));
   }
   return read_stream(stream);
 }

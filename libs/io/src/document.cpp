@@ -26,9 +26,10 @@ base::Result<Format> detect_format(std::string_view text) {
   }
   return base::Error{
       base::ErrorCode::kBadInput,
-      fmt::format("expected VisibleSim XML, which begins with '<', holdfast JSON, with '{{', or "
-                  "binary, with HOLDFAST; found {} at the beginning",
-                  excerpt(text.substr(0, 8))),
+      fmt::format("expected holdfast JSON such as {}, VisibleSim XML, which begins with '<', or "
+                  "binary, with HOLDFAST; found {} at the beginning{}",
+                  kLeastJson, excerpt(text.substr(0, 8)),
+                  text.starts_with('/') || text.starts_with('#') ? "; JSON has no comments" : ""),
       ""};
 }
 

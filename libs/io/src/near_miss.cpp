@@ -21,7 +21,7 @@ char small(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + '
 std::string folded(std::string_view name) {
   std::string plain;
   for (const char c : name) {
-    if (c != '_' && c != '-') {
+    if (c != '_' && c != '-' && c != ' ') {
       plain += small(c);
     }
   }
@@ -92,7 +92,7 @@ std::optional<std::string_view> near_miss(std::string_view name, Names known) {
   for (const std::string_view candidate : known) {
     const std::string like = folded(candidate);
     const bool lacks_unit = plain.size() >= kSlipLengthMin && candidate.starts_with(name) &&
-                            candidate[name.size()] == '_';
+                            (candidate[name.size()] == '_' || candidate[name.size()] == '-');
     const bool is_the_same =
         lacks_unit || (name.size() == candidate.size() && words_of(name) == words_of(candidate));
     const std::size_t count = is_the_same ? 0 : slips(plain, like);

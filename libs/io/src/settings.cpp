@@ -6,10 +6,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "holdfast/io/near_miss.hpp"
 #include "holdfast/io/report.hpp"
 #include "numbers.hpp"
+#include "text_input.hpp"
 #include "vocabulary.hpp"
 
 namespace holdfast::io {
@@ -32,7 +34,8 @@ bool is_class_strength(std::string_view key) {
 }
 
 base::Error unknown_key(std::string_view key) {
-  std::vector<std::string_view> names(kConnectorKeys.begin(), kConnectorKeys.end());
+  std::vector<std::string_view> names;
+  std::ranges::copy_if(kConnectorKeys, std::back_inserter(names), is_connector_key);
   for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
     names.push_back(parameter.key);
   }
@@ -49,7 +52,8 @@ base::Result<Setting> find_setting(std::string_view text) {
   const auto value =
       mark == std::string_view::npos ? std::nullopt : parse_number<double>(text.substr(mark + 1));
   if (!value) {
-    return base::bad_input("expected KEY=NUMBER, such as strength_lateral_n=12");
+    return base::bad_input(
+        fmt::format("expected KEY=NUMBER, such as strength_lateral_n=12, found {}", excerpt(text)));
   }
   std::string_view key = text.substr(0, mark);
   key.remove_prefix(key.starts_with(kMaterialPrefix) ? kMaterialPrefix.size() : 0);

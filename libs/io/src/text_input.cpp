@@ -113,6 +113,15 @@ std::string line_at(std::string_view text, std::size_t offset) {
   return fmt::format("line {}", std::ranges::count(text.substr(0, offset), '\n') + 1);
 }
 
+std::string place_at(std::string_view text, std::size_t offset) {
+  const std::string_view before = text.substr(0, offset);
+  const std::size_t line_feed = before.rfind('\n');
+  const auto letters = std::ranges::count_if(
+      before.substr(line_feed == std::string_view::npos ? 0 : line_feed + 1),
+      [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; });
+  return fmt::format("{}, column {}", line_at(text, offset), letters + 1);
+}
+
 std::optional<base::Error> find_input_fault(std::string_view text) {
   using base::ErrorCode;
   if (text.size() > kFileBytesMax) {
@@ -173,8 +182,7 @@ base::Error syntax_error(std::string_view text, std::size_t offset, std::string_
   begin = std::max(begin, offset - std::min(offset, kExcerptMax / 2));
   const std::string_view line = text.substr(begin, text.find('\n', begin) - begin);
   return {base::ErrorCode::kBadInput,
-          fmt::format("{} at {}", is_conflict ? "unresolved merge-conflict marker" : problem,
-                      excerpt(trimmed(line))),
+          fmt::format("{} at {}", is_conflict ? kConflict : problem, excerpt(trimmed(line))),
           line_at(text, offset)};
 }
 

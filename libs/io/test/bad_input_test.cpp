@@ -167,7 +167,11 @@ TEST(BadInput, with_a_merge_conflict_says_so) {
 }
 
 TEST(BadInput, that_breaks_the_rules_of_xml_is_refused_with_its_line) {
-  expect_refusal({"<world>\n<blockList>\n</world>", "line 3", "no well-formed XML"});
+  expect_refusal({"<world>\n<blockList>\n</world>", "line 3",
+                  "no well-formed XML: the element 'blockList' of line 2 is not closed at "
+                  "'</world>'"});
+  expect_refusal({"<world>\n<blockList>\n<block a='/>'/><!-- <b> -->", "line 3",
+                  "the element 'blockList' of line 2 is not closed, found the end of the text"});
   expect_refusal({"<world\x01>", "line 1", "no well-formed XML"});
   expect_refusal({"<world><blockList/>", "line 1", "no well-formed XML"});
   expect_refusal(
@@ -186,6 +190,8 @@ TEST(BadInput, of_visiblesim_names_what_was_found_and_what_is_allowed) {
         {xml("<block " + std::string(attributes) + "/>"), "line 3", std::string(message)});
   };
   bad_block("", "<block> has no attribute 'position'");
+  bad_block("positon=\"1,2,3\" id=\"1\"",
+            "<block> has no attribute 'position', found 'positon', 'id'");
   for (const char* position : {"1,2", "1,2,3,4", "1,2,x", "1,2,3x", "1.5,2,3", "1,2,", "", "1;2;3",
                                "1 2 3", "1,2,99999999999", "1,2,1000001", "1,2,0x10", "nan,0,0"}) {
     bad_block("position=\"" + std::string(position) + "\"",
@@ -226,11 +232,58 @@ TEST(BadInput, of_parameters_is_refused) {
 }
 
 TEST(BadInput, that_breaks_the_rules_of_json_is_refused_with_its_line) {
-  expect_refusal({"{\n\"format\": holdfast}", "line 2", "no valid JSON at '\"format\": h"});
-  expect_refusal({"{\"a\": 1,\n}", "line 2", "no valid JSON"});
-  expect_refusal({"{\"a\": NaN}", "line 1", "no valid JSON"});
-  expect_refusal({"{}\n{}", "line 2", "no valid JSON"});
-  expect_refusal({"{\"a\": 1\n", "line 2", "no valid JSON"});
+  const auto bad = [](std::string text, std::string_view where, std::string_view message) {
+    expect_refusal({std::move(text), std::string(where), "no valid JSON: " + std::string(message)});
+  };
+  bad("{\n\"format\": holdfast}", "line 2, column 11", "expected a value, found 'holdfast'");
+  bad("{\"a\": 1,\n}", "line 2, column 1",
+      "expected a key in double quotes, found '}'; remove the ',' before '}'");
+  bad("[[0,0,0],]", "line 1, column 10", "expected a value, found ']'; remove the ',' before ']'");
+  bad("{}\n{}", "line 2, column 1", "expected nothing behind the end, found '{'");
+  bad("{}}", "line 1, column 3", "expected nothing behind the end, found '}'");
+  bad("{\"a\": 1\n", "line 2, column 1",
+      "expected ',' or '}', found the end of the text; the object that begins in line 1, column 1 "
+      "is not closed");
+  bad("{\"b\": 1,\n \"cells\": [[0,0,0]}", "line 2, column 19",
+      "expected ',' or ']', found '}'; the array 'cells' that begins in line 2, column 11 is not "
+      "closed");
+  bad("{", "line 1, column 2", "expected a key in double quotes or '}', found the end of the text");
+  bad("{\"a\" 1}", "line 1, column 6", "expected ':' behind a key, found '1'");
+  bad("[1 2]", "line 1, column 4", "expected ',' or ']', found '2'");
+  // A letter of two bytes is one column.
+  bad("{\"\xC3\xA4\": x}", "line 1, column 7", "expected a value, found 'x'");
+}
+
+TEST(BadInput, that_other_languages_would_take_is_no_json_and_is_told_what_json_has) {
+  const auto bad = [](std::string_view value, std::string_view message) {
+    const auto read = read_json("[" + std::string(value) + "]");
+    ASSERT_FALSE(read) << value;
+    const base::Error& error = read.error();
+    EXPECT_TRUE(is_printable_line(error.message));
+    EXPECT_EQ(error.where, "line 1, column 2") << value;
+    EXPECT_NE(error.message.find(message), std::string::npos) << error.message;
+  };
+  for (const char* comment : {"// x", "/* x */", "# x"}) {
+    bad(comment, "; JSON has no comments");
+  }
+  bad("'a'", "; keys and strings stand in straight double quotes");
+  bad("\xE2\x80\x9Cx\xE2\x80\x9D", "; keys and strings stand in straight double quotes");
+  bad("(0,0,0)", "found '(0'; a cell is [x, y, z]");
+  for (const char* word : {"True", "FALSE", "None"}) {
+    bad(word, "; JSON has true, false and null");
+  }
+  for (const char* word : {"NaN", "Infinity", "-Infinity"}) {
+    bad(word, "; numbers are finite");
+  }
+  for (const char* word : {"+1", ".5", "5.", "01", "1e", "0x10", "-"}) {
+    bad(word, "found '" + std::string(word) + "'; numbers are written as 12, -0.5 or 1e-3");
+  }
+  bad("\"a\nb\"", "a string ends in the line in which it begins");
+  bad("\"C:\\models\"", "in a string '\\' is written as '\\\\'");
+  bad("\"abc", "'\"' is missing at the end of a string");
+}
+
+TEST(BadInput, of_a_number_or_key_beyond_what_is_read_is_refused) {
   expect_refusal({"{\"a\":\n1e999}", "line 2", "a number beyond the range of double"});
   expect_refusal({json("\"modules\": [[0,0,0]], \"modules\": []"), "/modules", "same key twice"});
   expect_refusal({json("\"modules\": [[0,0,0], {\"cell\": 1, \"cell\": 2}]"), "/modules/1/cell",
@@ -241,27 +294,33 @@ TEST(BadInput, of_another_json_format_is_refused) {
   expect_refusal({"{\"format\": \"gltf\", \"version\": 1}", "/format",
                   "expected \"holdfast-structure\", found 'gltf'"});
   expect_refusal({"{}", "", "key \"format\" is missing"});
-  expect_refusal({"[]", "", "expected an object, found an array"});
+  expect_refusal({"[]", "", "expected an object such as {\"format\": \"holdfast-structure\", "});
   expect_refusal(
       {"{\"format\": \"holdfast-structure\"}", "", "key \"version\" is missing, expected 1 or 2"});
   expect_refusal({"{\"format\": \"holdfast-structure\", \"version\": 3}", "/version",
                   "found version 3, this program reads versions 1 to 2 only",
                   base::ErrorCode::kUnsupported});
   expect_refusal(
-      {"{\"format\": \"holdfast-structure\", \"version\": 1}", "", "key \"modules\" is missing"});
+      {"{\"format\": \"holdfast-structure\", \"version\": 1, \"blocks\": []}", "",
+       "key \"modules\" is missing, expected an array of cells; found an object with 'format', "
+       "'version', 'blocks'"});
 }
 
 TEST(BadInput, of_json_names_what_was_found_and_what_is_allowed) {
   const auto bad = [](std::string_view members, std::string_view where, std::string_view message) {
     expect_refusal({json(members), std::string(where), std::string(message)});
   };
-  bad(R"("modules": {})", "/modules", "expected an array, found an object");
+  bad(R"("modules": {})", "/modules",
+      "expected an array of cells [x, y, z], found an empty object");
   bad(R"("modules": [7])", "/modules/0",
       "expected a cell [x, y, z] or an object with the key \"cell\", found 7");
   bad(R"("modules": [[1,2]])", "/modules/0", "expected three integers, found an array of 2");
   bad(R"("modules": [[0,0,0], [1,2,3.5]])", "/modules/1/2",
       "expected an integer from -1000000 to 1000000, found 3.5");
   bad(R"("modules": [[0,0,99999999999999]])", "/modules/0/2", "found 99999999999999");
+  bad(R"("modules": [{"x": 0, "y": 0}])", "/modules/0", "found an object with 'x', 'y'");
+  bad(R"("modules": [], "material": "PLA")", "/material", "an object of numbers, such as {");
+  bad(R"("modules": [], "support_z": null)", "/support_z", "needs \"version\": 2");
   bad(R"("modules": [[0,0,"1"]])", "/modules/0/2",
       "expected an integer from -1000000 to 1000000, found '1'");
   bad(R"("modules": [{"fixed": true}])", "/modules/0", "the key \"cell\"");

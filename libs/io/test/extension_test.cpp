@@ -352,7 +352,8 @@ TEST(Version2, says_what_is_wrong_and_what_is_allowed) {
   bad(R"("obstacle": [])", "/obstacle", "did you mean 'obstacles'?");
   bad(R"("floor": {"fricton": 1})", "/floor/fricton", "did you mean 'friction'?");
   bad(R"("floor": {"friction": -1})", "/floor/friction", "not negative");
-  bad(R"("gravity_m_s2": 9.81)", "/gravity_m_s2", "expected an array");
+  bad(R"("gravity_m_s2": 9.81)", "/gravity_m_s2",
+      "expected three numbers, such as [0, 0, -9.81], found 9.81");
   bad(R"("gravity_m_s2": [0,0,0])", "/gravity_m_s2", "gravity is zero");
   bad(R"("gravity_m_s2": [0,-9.81])", "/gravity_m_s2", "expected three numbers");
   bad(R"("gravity_m_s2": [0,0,-9], "material": {"gravity_m_s2": 9})", "/gravity_m_s2",
@@ -393,10 +394,10 @@ TEST(Version2, says_what_is_wrong_and_what_is_allowed) {
   bad(R"("steps": [{"release": [[[0,0,0]]]}])", "/steps/0/release/0",
       "expected the two cells of a connection, found 1");
   expect_refusal(version_2(R"("modules": [{"cell": [0,0,0], "kind": "b"}], "kinds": {"a": {}})"),
-                 "/modules/0/kind", "the kind 'b' is none of those");
+                 "/modules/0/kind", "the kind 'b' is none of those in \"kinds\", which has 'a'");
   expect_refusal(
       version_2(R"("modules": [], "planned": [[0,0,0], {"cell": [1,0,0], "kind": "b"}])"),
-      "/planned/1/kind", "the kind 'b' is none of those");
+      "/planned/1/kind", "the kind 'b' is none of those in \"kinds\", which has none");
   expect_refusal(version_2(R"("modules": [{"cell": [0,0,0], "knd": "b"}])"), "/modules/0/knd",
                  "is unknown");
 }

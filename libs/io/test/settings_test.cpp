@@ -88,12 +88,15 @@ TEST(Setting, holds_for_files_of_VisibleSim_and_is_named) {
 }
 
 TEST(Setting, is_refused_with_what_is_expected) {
-  EXPECT_EQ(refusal("mass_kg"), "expected KEY=NUMBER, such as strength_lateral_n=12");
-  EXPECT_EQ(refusal("mass_kg=1kg"), refusal("mass_kg"));
-  EXPECT_EQ(refusal("mass_kg=nan"), refusal("mass_kg"));
+  for (const char* text : {"mass_kg", "mass_kg=1kg", "mass_kg=nan", "mass_kg=", "mass_kg=1,5"}) {
+    EXPECT_EQ(refusal(text), "expected KEY=NUMBER, such as strength_lateral_n=12, found '" +
+                                 std::string(text) + "'");
+  }
   EXPECT_EQ(refusal("mas_kg=1"), "a material has no 'mas_kg'; did you mean 'mass_kg'?");
-  EXPECT_EQ(refusal("bending=1").find("a material has no 'bending'"), 0U);
+  EXPECT_EQ(refusal("bending=1").find("a material has no 'bending'; it has strength_n, "), 0U);
+  EXPECT_EQ(refusal("bending=1").find("bending,"), std::string::npos) << "it is no number";
   EXPECT_NE(refusal("poisson_ratio=1").find("poisson_ratio is 1"), std::string::npos);
+  EXPECT_NE(refusal("gravity_m_s2=-9.81").find("here it is a size"), std::string::npos);
   EXPECT_NE(refusal("friction=0").find("expected a number of 1e-12 and more"), std::string::npos);
 }
 

@@ -308,8 +308,8 @@ std::string missing_support(const Robot& robot, const RobotSpec& spec) {
   }
   return fmt::format(
       "nothing holds the robot: no existing module lies on the support level z = {}{} and none is "
-      "fixed; the lowest module is {}",
-      robot.support_z(), obstacles, text(lowest->cell));
+      "fixed; the lowest module is {}: lower it, or let the support level be {}",
+      robot.support_z(), obstacles, text(lowest->cell), lowest->cell.z);
 }
 
 }  // namespace

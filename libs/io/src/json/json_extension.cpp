@@ -21,7 +21,8 @@ namespace {
 using base::Cell;
 
 std::array<double, 3> vector(JsonReading& reading, const Json& value, const JsonPlace& place) {
-  const Json::array_t& array = reading.elements(value, place);
+  const Json::array_t& array =
+      reading.elements(value, place, "three numbers, such as [0, 0, -9.81]");
   std::array<double, 3> numbers{};
   if (array.size() != numbers.size()) {
     reading.fail(place, fmt::format("expected three numbers, found an array of {}", array.size()));
@@ -81,12 +82,13 @@ std::vector<model::CellPair> pairs(JsonReading& reading, const Json& value,
 /// A failure if an object lacks a key that it must have.
 void demand(JsonReading& reading, const Json& value, const JsonPlace& place, std::string_view key) {
   if (value.is_object() && !value.contains(key)) {
-    reading.fail_missing(place, key);
+    reading.fail_missing(value, place, key);
   }
 }
 
 void read_floor(JsonReading& reading, const Json& value, const JsonPlace& place) {
-  for (const auto& [key, member] : reading.members(value, place)) {
+  for (const auto& [key, member] :
+       reading.members(value, place, "an object such as {\"friction\": 0.5}")) {
     const JsonPlace here = place.at(key);
     if (key == "friction") {
       reading.document.extension.floor_friction = read_not_negative(reading, member, here);
@@ -121,7 +123,8 @@ void read_gravity(JsonReading& reading, const Json& value, const JsonPlace& plac
 }
 
 void read_kinds(JsonReading& reading, const Json& value, const JsonPlace& place) {
-  for (const auto& [name, member] : reading.members(value, place)) {
+  for (const auto& [name, member] :
+       reading.members(value, place, "an object such as {\"battery\": {\"mass_kg\": 0.2}}")) {
     const JsonPlace here = place.at(name);
     if (const auto fault = find_string_fault(name); fault || name.empty()) {
       reading.fail(here, "the name of a kind is empty or no printable text");
@@ -139,7 +142,8 @@ ColoredObstacle obstacle(JsonReading& reading, const Json& value, const JsonPlac
   ColoredObstacle colored;
   model::Obstacle& found = colored.obstacle;
   bool is_list = false;
-  for (const auto& [key, member] : reading.members(value, place)) {
+  for (const auto& [key, member] :
+       reading.members(value, place, "an object with \"from\" and \"to\", or with \"cells\"")) {
     const JsonPlace here = place.at(key);
     if (key == "from") {
       found.from = reading.cell(member, here);
@@ -185,7 +189,8 @@ void read_obstacles(JsonReading& reading, const Json& value, const JsonPlace& pl
 model::Payload payload(JsonReading& reading, const Json& value, const JsonPlace& place) {
   model::Payload found;
   demand(reading, value, place, "cell");
-  for (const auto& [key, member] : reading.members(value, place)) {
+  for (const auto& [key, member] :
+       reading.members(value, place, "an object with \"cell\" and \"force_n\"")) {
     const JsonPlace here = place.at(key);
     if (key == "cell") {
       found.cell = reading.cell(member, here);
@@ -228,7 +233,8 @@ model::Move move(JsonReading& reading, const Json& value, const JsonPlace& place
 
 model::Step plan_step(JsonReading& reading, const Json& value, const JsonPlace& place) {
   model::Step step;
-  for (const auto& [key, member] : reading.members(value, place)) {
+  for (const auto& [key, member] :
+       reading.members(value, place, "an object such as {\"attach\": [[0, 0, 1]]}")) {
     const JsonPlace here = place.at(key);
     if (key == "attach") {
       step.attach = cells(reading, member, here);
@@ -362,14 +368,17 @@ void read_extension_text(Reading& reading, std::string_view text, const Reading:
 
 void check_kinds(JsonReading& reading) {
   Extension& extension = reading.document.extension;
+  std::vector<std::string_view> names;
+  std::ranges::transform(extension.kinds, std::back_inserter(names), &KindEntry::name);
   std::ranges::sort(extension.own, {},
                     [](const OwnParameters& own) { return std::pair(own.step, own.module); });
   for (const OwnParameters& own : extension.own) {
-    if (!own.kind.empty() &&
-        std::ranges::find(extension.kinds, own.kind, &KindEntry::name) == extension.kinds.end()) {
-      reading.fail({base::ErrorCode::kBadInput,
-                    fmt::format("the kind {} is none of those in \"kinds\"", excerpt(own.kind)),
-                    own_place(own) + "/kind"});
+    if (!own.kind.empty() && std::ranges::find(names, own.kind) == names.end()) {
+      reading.fail(
+          {base::ErrorCode::kBadInput,
+           fmt::format("the kind {} is none of those in \"kinds\", which has {}", excerpt(own.kind),
+                       names.empty() ? "none" : excerpt(fmt::format("{}", fmt::join(names, ", ")))),
+           own_place(own) + "/kind"});
     }
   }
 }

@@ -25,7 +25,7 @@ class JsonReader {
   base::Result<ReadDocument> read(const Json& root, const ReadOptions& options) &&;
 
  private:
-  bool read_heading(const Json::object_t& root, const JsonPlace& place, const ReadOptions& options);
+  bool read_heading(const Json& root, const JsonPlace& place, const ReadOptions& options);
   void read_robot(const Json& value, const JsonPlace& place, const ReadOptions& options);
   void read_lattice(const Json& value, const JsonPlace& place, const ReadOptions& options);
   bool allows(const JsonPlace& place);
@@ -58,8 +58,9 @@ class JsonReader {
 base::Result<ReadDocument> JsonReader::read(const Json& root, const ReadOptions& options) && {
   reading_.allows_unknown = options.allow_unknown;
   const JsonPlace top;
-  const Json::object_t& members = reading_.members(root, top);
-  if (!reading_.has_failed() && read_heading(members, top, options)) {
+  const Json::object_t& members =
+      reading_.members(root, top, fmt::format("an object such as {}", kLeastJson));
+  if (!reading_.has_failed() && read_heading(root, top, options)) {
     for (const auto& [key, value] : members) {
       read_member(key, value, top.at(key));
     }
@@ -79,18 +80,18 @@ base::Result<ReadDocument> JsonReader::read(const Json& root, const ReadOptions&
 }
 
 /// Reads the members that must be there, and refuses versions that cannot be read.
-bool JsonReader::read_heading(const Json::object_t& root, const JsonPlace& place,
+bool JsonReader::read_heading(const Json& root, const JsonPlace& place,
                               const ReadOptions& options) {
   static const Json kNone;
   const auto value_of = [&](const char* key) -> const Json& {
     const auto member = root.find(key);
-    return member == root.end() ? kNone : member->second;
+    return member == root.end() ? kNone : *member;
   };
   const Json& format = value_of("format");
   const Json& version = value_of("version");
   const auto expect = [&](const char* key, const std::string& expected) {
     if (root.find(key) == root.end()) {
-      reading_.fail_missing(place, key, expected);
+      reading_.fail_missing(root, place, key, expected);
     } else {
       reading_.refuse(value_of(key), place.at(key), expected);
     }
@@ -147,7 +148,8 @@ void JsonReader::read_lattice(const Json& value, const JsonPlace& place,
 /// lost.
 bool JsonReader::allows(const JsonPlace& place) {
   if (!is_extended_) {
-    reading_.fail(place, fmt::format("the key {} is one of version 2, the document says version 1",
+    reading_.fail(place, fmt::format("the key {} is one of version 2, the document says version "
+                                     "1; set \"version\": 2",
                                      excerpt(place.key)));
   }
   return is_extended_;
@@ -163,8 +165,11 @@ void JsonReader::read_member(const std::string& key, const Json& value, const Js
     document.name = reading_.string(value, place);
   } else if (key == "description") {
     document.description = reading_.string(value, place);
-  } else if (key == "support_z" && is_extended_ && value.is_null()) {
-    document.extension.has_floor = false;
+  } else if (key == "support_z" && value.is_null()) {
+    document.extension.has_floor = !is_extended_;
+    if (!is_extended_) {
+      reading_.refuse(value, place, "an integer (null, for no floor, needs \"version\": 2)");
+    }
   } else if (key == "support_z") {
     document.support_z = reading_.integer(value, place, kCoordinateRange);
   } else if (key == "material") {
@@ -191,7 +196,8 @@ void JsonReader::read_member(const std::string& key, const Json& value, const Js
 }
 
 void JsonReader::read_material(const Json& value, const JsonPlace& place) {
-  for (const auto& [key, member] : reading_.members(value, place)) {
+  for (const auto& [key, member] :
+       reading_.members(value, place, "an object of numbers, such as {\"mass_kg\": 0.061}")) {
     const JsonPlace here = place.at(key);
     const auto* parameter =
         std::ranges::find(model::kMaterialParameters, key, &model::MaterialParameter::key);
@@ -210,7 +216,8 @@ void JsonReader::read_material(const Json& value, const JsonPlace& place) {
 
 void JsonReader::read_known_answer(const Json& value, const JsonPlace& place) {
   KnownAnswer answer;
-  for (const auto& [key, member] : reading_.members(value, place)) {
+  for (const auto& [key, member] :
+       reading_.members(value, place, "an object such as {\"verdict\": \"safe\"}")) {
     const JsonPlace here = place.at(key);
     if (key == "verdict") {
       answer.verdict = reading_.string(member, here);
@@ -225,7 +232,7 @@ void JsonReader::read_known_answer(const Json& value, const JsonPlace& place) {
     }
   }
   if (value.is_object() && !value.contains("verdict")) {
-    reading_.fail_missing(place, "verdict");
+    reading_.fail_missing(value, place, "verdict");
   }
   reading_.take_known_answer(std::move(answer), [&] { return place.at("verdict").pointer(); });
 }
@@ -312,7 +319,7 @@ template <class Entry>
 std::vector<Entry> JsonReader::entries(const Json& value, const JsonPlace& place,
                                        std::size_t step) {
   std::vector<Entry> list;
-  const Json::array_t& array = reading_.elements(value, place);
+  const Json::array_t& array = reading_.elements(value, place, "an array of cells [x, y, z]");
   if (reading_.take_room(array.size(), [&] { return place.pointer(); })) {
     list.reserve(array.size());
     for (std::size_t i = 0; i < array.size() && !reading_.has_failed(); ++i) {
@@ -383,7 +390,8 @@ Entry JsonReader::entry(const Json& value, const JsonPlace& place, OwnParameters
       entry.cell = reading_.cell(member, here);
     } else if (std::ranges::find(kShapeKeys, key) != kShapeKeys.end()) {
       if (allows(here) && !is_many) {
-        reading_.fail(here, "a module with \"cell\" is one module, this key is of many");
+        reading_.fail(
+            here, "a module with \"cell\" is one module, this key is of many: give one of both");
       }
     } else if (is_many && key == "attributes") {
       reading_.fail(here, "attributes are of one module, with \"cell\"");

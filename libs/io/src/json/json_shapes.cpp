@@ -65,10 +65,12 @@ std::vector<Cell> layer_cells(JsonReading& reading, const Json& entry, const Jso
   Cell corner = at == entry.end() ? Cell{} : reading.cell(*at, place.at("at"));
   std::vector<Cell> cells;
   const JsonPlace list = place.at("layers");
-  const Json::array_t& layers = reading.elements(entry.at("layers"), list);
+  const Json::array_t& layers = reading.elements(
+      entry.at("layers"), list, "an array of layers, each an array of rows, such as [[\"##\"]]");
   for (std::size_t z = 0; z < layers.size() && !reading.has_failed(); ++z, ++corner.z) {
     const JsonPlace layer = list.at(z);
-    const Json::array_t& rows = reading.elements(layers[z], layer);
+    const Json::array_t& rows =
+        reading.elements(layers[z], layer, "an array of rows, such as [\"##\", \"#.\"]");
     for (std::size_t i = 0; i < rows.size() && !reading.has_failed(); ++i) {
       const auto y = static_cast<std::int32_t>(rows.size() - 1 - i);
       add_row(reading, rows[i], layer.at(i), {corner.x, corner.y + y, corner.z}, cells);
@@ -102,7 +104,7 @@ std::vector<Cell> shape_cells(JsonReading& reading, const Json& entry, const Jso
   const bool is_box = entry.contains("from") && entry.contains("to");
   const bool is_drawn = entry.contains("layers");
   if (is_drawn ? has_corner : !is_box || entry.contains("at")) {
-    reading.fail(place, "expected either \"from\" and \"to\", or \"layers\" and perhaps \"at\"");
+    reading.refuse(entry, place, "either \"from\" and \"to\", or \"layers\" and perhaps \"at\"");
     return {};
   }
   return is_drawn ? layer_cells(reading, entry, place) : box_cells(reading, entry, place);

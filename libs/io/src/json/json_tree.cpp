@@ -11,6 +11,7 @@
 
 #include "holdfast/host/interruption.hpp"
 #include "holdfast/io/document.hpp"
+#include "json/json_fault.hpp"
 #include "reading.hpp"
 #include "text_input.hpp"
 
@@ -143,9 +144,13 @@ class TreeBuilder {
   bool parse_error(std::size_t position, const std::string& /*token*/,
                    const nlohmann::detail::exception& fault) {
     // 406 is the parser's number for a number beyond the range of double.
+    const auto known = fault.id == 406 ? std::nullopt : find_json_fault(text_);
     error_ =
         syntax_error(text_, position == 0 ? 0 : position - 1,
                      fault.id == 406 ? "a number beyond the range of double" : "no valid JSON");
+    if (known && !error_->message.starts_with(kConflict)) {
+      error_ = known;
+    }
     return false;
   }
 

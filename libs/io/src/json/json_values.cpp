@@ -15,12 +15,26 @@
 namespace holdfast::io {
 namespace {
 
+constexpr std::size_t kKeysShownMax = 6;
+constexpr std::size_t kKeyShownMax = 20;
+
 /// A value for a message.
 std::string describe(const Json& value) {
   if (value.is_string()) {
     return excerpt(value.get_ref<const std::string&>());
   }
-  return value.is_structured() ? fmt::format("an {}", value.type_name()) : value.dump();
+  if (!value.is_object()) {
+    return value.is_array() ? fmt::format("an array of {}", value.size()) : value.dump();
+  }
+  std::string text = value.empty() ? "an empty object" : "an object with ";
+  std::size_t count = 0;
+  for (const auto& [key, member] : value.get_ref<const Json::object_t&>()) {
+    if (++count > kKeysShownMax) {
+      return text + ", ...";
+    }
+    text += (count == 1 ? "" : ", ") + excerpt(std::string_view(key).substr(0, kKeyShownMax));
+  }
+  return text;
 }
 
 /// The value as a T of the tree, or a failure and an empty T.
@@ -54,10 +68,10 @@ void JsonReading::fail(const JsonPlace& place, std::string message) {
   fail({base::ErrorCode::kBadInput, std::move(message), place.pointer()});
 }
 
-void JsonReading::fail_missing(const JsonPlace& object, std::string_view key,
+void JsonReading::fail_missing(const Json& object, const JsonPlace& place, std::string_view key,
                                std::string_view expected) {
-  fail(object, fmt::format("key \"{}\" is missing{}{}", key, expected.empty() ? "" : ", expected ",
-                           expected));
+  fail(place, fmt::format("key \"{}\" is missing{}{}; found {}", key,
+                          expected.empty() ? "" : ", expected ", expected, describe(object)));
 }
 
 void JsonReading::refuse(const Json& value, const JsonPlace& place, std::string_view expected) {
@@ -76,12 +90,14 @@ void JsonReading::note_unknown_key(const JsonPlace& place, Names known) {
   }
 }
 
-const Json::object_t& JsonReading::members(const Json& value, const JsonPlace& place) {
-  return take<Json::object_t>(*this, value, place, "an object");
+const Json::object_t& JsonReading::members(const Json& value, const JsonPlace& place,
+                                           std::string_view expected) {
+  return take<Json::object_t>(*this, value, place, expected);
 }
 
-const Json::array_t& JsonReading::elements(const Json& value, const JsonPlace& place) {
-  return take<Json::array_t>(*this, value, place, "an array");
+const Json::array_t& JsonReading::elements(const Json& value, const JsonPlace& place,
+                                           std::string_view expected) {
+  return take<Json::array_t>(*this, value, place, expected);
 }
 
 std::string JsonReading::string(const Json& value, const JsonPlace& place) {
@@ -116,7 +132,7 @@ std::int32_t JsonReading::integer(const Json& value, const JsonPlace& place, Int
 
 std::array<std::int32_t, 3> JsonReading::triple(const Json& value, const JsonPlace& place,
                                                 IntegerRange range) {
-  const Json::array_t& array = elements(value, place);
+  const Json::array_t& array = elements(value, place, "three integers, such as [0, 0, 1]");
   std::array<std::int32_t, 3> triple{};
   if (array.size() != triple.size()) {
     fail(place, fmt::format("expected three integers, found an array of {}", array.size()));
@@ -174,7 +190,7 @@ Element JsonReading::element(const Json& value, const JsonPlace& place, int dept
     }
   }
   if (value.is_object() && !value.contains("element")) {
-    fail_missing(place, "element");
+    fail_missing(value, place, "element");
   } else if (const auto fault = find_name_fault(element.name)) {
     fail(place.at("element"), *fault);
   }

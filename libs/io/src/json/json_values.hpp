@@ -34,8 +34,9 @@ class JsonReading : public Reading {
 
   void fail(const JsonPlace& place, std::string message);
 
-  /// An object lacks a key that it must have.
-  void fail_missing(const JsonPlace& object, std::string_view key, std::string_view expected = "");
+  /// An object lacks a key that it must have; those that it has are named.
+  void fail_missing(const Json& object, const JsonPlace& place, std::string_view key,
+                    std::string_view expected = "");
 
   /// The one message for a value that is not what it should be.
   void refuse(const Json& value, const JsonPlace& place, std::string_view expected);
@@ -44,8 +45,10 @@ class JsonReading : public Reading {
   /// neither if it begins with `x-`.
   void note_unknown_key(const JsonPlace& place, Names known);
 
-  const Json::object_t& members(const Json& value, const JsonPlace& place);
-  const Json::array_t& elements(const Json& value, const JsonPlace& place);
+  const Json::object_t& members(const Json& value, const JsonPlace& place,
+                                std::string_view expected = "an object");
+  const Json::array_t& elements(const Json& value, const JsonPlace& place,
+                                std::string_view expected = "an array");
   std::string string(const Json& value, const JsonPlace& place);
   bool boolean(const Json& value, const JsonPlace& place);
   double number(const Json& value, const JsonPlace& place);

@@ -10,6 +10,7 @@
 
 #include "json/json_text.hpp"
 #include "json/json_values.hpp"
+#include "text_input.hpp"
 
 namespace holdfast::io {
 namespace {
@@ -73,7 +74,8 @@ std::string CertificateReader::choice(const char* key, const std::vector<std::st
   const Json& value = at(key);
   const std::string name = value.is_string() ? value.get<std::string>() : "";
   if (std::ranges::find(names, name) == names.end()) {
-    fail(key, fmt::format("one of {}", fmt::join(names, ", ")));
+    fail(key, fmt::format("{}, found {}", fmt::join(names, " or "),
+                          value.is_string() ? excerpt(name) : value.type_name()));
   }
   return name;
 }

@@ -20,13 +20,20 @@ using Lengths = std::array<double, 3>;
 /// The block size of VisibleSim's lattice of Blinky Blocks.
 constexpr Lengths kBlockSize = {40, 40, 41};
 
-/// Whether a text is one of VisibleSim's words for no, in any case.
-bool is_no(std::string_view text) {
-  std::string lower(trimmed(text));
+/// Whether a block is fixed: what is not one of VisibleSim's words for no, in any case, is a yes,
+/// with a note if it is no word for that either.
+bool is_fixed(XmlReading& reading, const pugi::xml_node& block) {
+  const pugi::xml_attribute fixed = block.attribute("fixed");
+  std::string lower(trimmed(fixed.value()));
   std::ranges::transform(lower, lower.begin(), [](char c) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   });
-  return is_one_of(lower, {"0", "false", "no"});
+  const bool is_no = !fixed || is_one_of(lower, {"0", "false", "no"});
+  if (!is_no && !is_one_of(lower, {"1", "true", "yes"})) {
+    reading.warn_at(
+        block, fmt::format("fixed of <block> is {}, which counts as yes", excerpt(fixed.value())));
+  }
+  return !is_no;
 }
 
 /// Whether an element has more attributes than its position: most have none, and a search for
@@ -63,9 +70,8 @@ ModuleEntry read_block(XmlReading& reading, const pugi::xml_node& block) {
                  base::ErrorCode::kUnsupported);
   }
   read_own(reading, block, {0, reading.document.modules.size(), {}, {}});
-  const pugi::xml_attribute fixed = block.attribute("fixed");
   return {.cell = reading.cell(block),
-          .is_fixed = fixed && !is_no(fixed.value()),
+          .is_fixed = has_more_than_position(block) && is_fixed(reading, block),
           .color = reading.color(block),
           .attributes = reading.attributes(block, is_module_attribute)};
 }

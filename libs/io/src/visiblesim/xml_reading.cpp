@@ -8,6 +8,7 @@
 #include <cmath>
 #include <iterator>
 #include <new>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,8 @@ namespace {
 
 /// More elements cannot be a structure of kModuleCountMax modules.
 constexpr std::size_t kElementCountMax = model::kModuleCountMax + 10'000;
+
+constexpr std::size_t kFoundShownMax = 100;
 
 /// The entity at the beginning of a text, from '&' to ';'; empty if it is a mere ampersand.
 std::string_view entity_of(std::string_view text) {
@@ -51,7 +54,7 @@ class ShapeCheck {
     for (std::size_t i = text_.find('<'); i < text_.size(); i = text_.find('<', i)) {
       const std::size_t begin = i;
       step(i);
-      if (depth_ > kNestingMax) {
+      if (std::ssize(open_) > kNestingMax) {
         return syntax_error(text_, begin,
                             fmt::format("elements nested deeper than the {} allowed", kNestingMax));
       }
@@ -66,10 +69,41 @@ class ShapeCheck {
                             fmt::format("more than the {} elements allowed", kElementCountMax));
       }
     }
+    if (!open_.empty() && !unclosed_) {
+      unclosed_ = {open_.back(), text_.size()};
+    }
     return std::nullopt;
   }
 
+  /// Names the first element that ends where another one does, or not at all.
+  std::optional<base::Error> find_unclosed() const {
+    if (!unclosed_) {
+      return std::nullopt;
+    }
+    const auto [begin, end] = *unclosed_;
+    const std::string what = fmt::format("no well-formed XML: the element {} of {} is not closed",
+                                         excerpt(name_at(begin + 1)), line_at(text_, begin));
+    return end < text_.size()
+               ? syntax_error(text_, end, what)
+               : base::Error{base::ErrorCode::kBadInput, what + ", found the end of the text",
+                             line_at(text_, end)};
+  }
+
  private:
+  std::string_view name_at(std::size_t begin) const {
+    const std::string_view rest = text_.substr(begin);
+    return rest.substr(0, rest.find_first_of(" \t\r\n/>"));
+  }
+
+  void close(std::size_t begin) {
+    if (!open_.empty()) {
+      if (!unclosed_ && name_at(begin + 2) != name_at(open_.back() + 1)) {
+        unclosed_ = {open_.back(), begin};
+      }
+      open_.pop_back();
+    }
+  }
+
   /// Moves i from a '<' to the end of what it begins.
   void step(std::size_t& i) {
     const std::string_view rest = text_.substr(i);
@@ -80,13 +114,13 @@ class ShapeCheck {
     } else if (rest.starts_with("<?")) {
       skip(i, 2, "?>");
     } else if (rest.starts_with("</")) {
-      --depth_;
+      close(i);
       i += 2;
     } else if (rest.starts_with("<!")) {
       i += 2;
     } else {
       ++count_;
-      ++depth_;
+      open_.push_back(i);
       skip_tag(i);
     }
   }
@@ -108,7 +142,9 @@ class ShapeCheck {
       } else if (c == '"' || c == '\'') {
         quote = c;
       } else if (c == '>' || c == '<') {
-        depth_ -= c == '>' && text_[i - 1] == '/' ? 1 : 0;
+        if (c == '>' && text_[i - 1] == '/') {
+          open_.pop_back();
+        }
         return;
       }
     }
@@ -122,7 +158,8 @@ class ShapeCheck {
   }
 
   std::string_view text_;
-  int depth_ = 0;
+  std::vector<std::size_t> open_;  ///< Where the elements begin that have not ended.
+  std::optional<std::pair<std::size_t, std::size_t>> unclosed_;  ///< Its begin, and where it ends.
   std::size_t count_ = 0;
   std::size_t unread_at_ = std::string_view::npos;  ///< The first entity that is not read.
 };
@@ -134,7 +171,8 @@ bool is_text(const pugi::xml_node& node) {
 }  // namespace
 
 void XmlReading::parse(pugi::xml_document& tree) {
-  if (const auto fault = ShapeCheck(text_).run()) {
+  ShapeCheck shape(text_);
+  if (const auto fault = shape.run()) {
     fail(*fault);
     return;
   }
@@ -144,7 +182,11 @@ void XmlReading::parse(pugi::xml_document& tree) {
   if (result.status == pugi::status_out_of_memory) {
     throw std::bad_alloc();  // It is not the file that is at fault.
   }
-  if (!result) {
+  const auto unclosed =
+      result.status == pugi::status_end_element_mismatch ? shape.find_unclosed() : std::nullopt;
+  if (unclosed) {
+    fail(*unclosed);
+  } else if (!result) {
     fail(syntax_error(text_, static_cast<std::size_t>(result.offset),
                       fmt::format("no well-formed XML ({})", result.description())));
   }
@@ -184,7 +226,7 @@ void XmlReading::warn_of_unknown_child(const pugi::xml_node& child, Names known)
     note_unknown(fmt::format("the element {}", excerpt(child.name())), child.name(), known,
                  "ignored here", [&] { return line(child); });
   } else if (is_conflict_marker(trimmed(child.value()))) {
-    fail(child, "unresolved merge-conflict marker at " + excerpt(trimmed(child.value())));
+    fail(child, std::string(kConflict) + " at " + excerpt(trimmed(child.value())));
   } else {
     warn_at(child, "text outside of elements is ignored");
   }
@@ -220,7 +262,14 @@ Attributes XmlReading::attributes(const pugi::xml_node& node,
 const char* XmlReading::required(const pugi::xml_node& node, const char* name) {
   const pugi::xml_attribute attribute = node.attribute(name);
   if (!attribute) {
-    fail(node, fmt::format("<{}> has no attribute '{}'", node.name(), name));
+    std::string found;
+    for (const pugi::xml_attribute& other : node.attributes()) {
+      found += (found.empty() ? ", found " : ", ") + excerpt(other.name());
+      if (found.size() > kFoundShownMax) {
+        break;
+      }
+    }
+    fail(node, fmt::format("<{}> has no attribute '{}'{}", node.name(), name, found));
     return nullptr;
   }
   return attribute.value();
