@@ -38,6 +38,8 @@ expect_line out '^3 files: 1 safe, 1 overload, 1 unstable, 0 undecided, 0 not re
 
 # Where the next module may go: 0 if a place is safe, 1 if none is.
 expect_exit 0 next "$safe" --json next.json --svg next.svg --limit 3
+expect_line out '^arm_breaks_a: 11 modules, 37 places for the next: 36 safe'
+expect_line next.json '"candidates"'
 # A bar of five on a post of three breaks and does not topple.
 printf '{"format": "holdfast-structure", "version": 2, "modules": [[0,0,0], [1,0,0], [2,0,0],
   [0,0,1], [0,0,2], [1,0,2], [2,0,2], [3,0,2], [4,0,2], [5,0,2]]}' >crane.json
@@ -47,10 +49,10 @@ expect_line out '^              with a prop in \(4,0,1\), below a module: load r
 expect_line out '^              with connections 1[.]2[0-9] times as strong$'
 expect_exit 1 check crane.json --remedies --json crane_report.json
 expect_line crane_report.json '"remedies"'
+expect_exit 1 check crane.json crane.json --remedies
+[ "$(grep -c '^  would hold  ' out)" -eq 2 ] || fault "not the remedies of both: $(cat out)"
 expect_exit 0 check "$safe" --remedies
 if grep -q 'would hold' out; then fault 'remedies for a structure that is safe'; fi
-expect_line out '^arm_breaks_a: 11 modules, 37 places for the next: 36 safe'
-expect_line next.json '"candidates"'
 expect_line next.svg 'place for the next module'
 expect_exit 0 next "$safe" --json - --quiet
 expect_line out '"seconds"'
@@ -94,6 +96,13 @@ code=0
 code=0
 "$checker" "$safe" >out 2>err || code=$?
 [ "$code" -eq 65 ] || fault "the checker takes a structure: $code"
+for arguments in '64 --version' '65 .' '65 missing.txt'; do
+  code=0
+  "$checker" "${arguments#* }" >out 2>err || code=$?
+  [ "$code" -eq "${arguments% *}" ] || fault "holdfast-checker $arguments: exit $code"
+  expect_line err "^holdfast-checker: (there is no option '--version'|[.]: expected a certificate,|\
+missing.txt: cannot be read: No such file)"
+done
 expect_exit 0 check "$safe" --certificate safe_proof.txt
 "$checker" safe_proof.txt >out || fault "the checker does not prove what is safe: $(cat out)"
 expect_line out '^  verdict +SAFE: no connection breaks, and the robot stands$'
@@ -128,7 +137,16 @@ expect_exit 0 simulate "$safe" --link unit --trace trace.json
 python3 -c 'import json; assert len(json.load(open("trace.json"))["traceEvents"]) > 100' ||
   fault "the trace is not complete JSON"
 expect_exit 64 simulate "$safe" --kill 9,9,9@0
-expect_line err 'cell of an existing module'
+expect_line err '9,9,9@0: no module is in \(9,9,9\), expected the cell of an existing module'
+# Cells as reports and documents write them.
+for cell in 2,1,1 '(2,1,1)' '(2, 1, 1)'; do
+  "$program" simulate "$safe" --link unit --detach "$cell@900" >"cell$cell" || true
+  cmp -s cell2,1,1 "cell$cell" || fault "another answer for $cell: $(cat "cell$cell")"
+done
+expect_exit 64 simulate "$safe" --detach '(2,1,1@9'
+expect_line err 'expected X,Y,Z@TIME, as in'
+expect_exit 64 simulate "$safe" --cut 2,1,1:up@9
+expect_line err 'FACE one of [+]x, -x'
 # Step by step: its planned module comes, the next one is planned, and withdrawn.
 expect_exit 0 simulate "$safe" --attach 6,1,2@10 --json steps.json
 python3 - <<'PYTHON' || fault "the report of an attached module is wrong"
@@ -284,7 +302,9 @@ expect_exit 64 robots roffi
 expect_line err 'none of the catalogue'
 expect_exit 0 check --robot rofi "$safe"
 expect_exit 64 check --robot roffi "$safe"
-expect_line err 'none of the catalogue'
+expect_line err "none of the catalogue; did you mean 'rofi'\\?"
+expect_exit 64 robots blinky
+expect_line err "did you mean 'blinky-blocks'"
 expect_exit 65 check --robot smores-ep wall.json
 expect_line err 'of the robot smores-ep no mass_kg is published'
 
@@ -344,11 +364,23 @@ expect_usage "^holdfast check: there is no option '--jsn'; did you mean '--json'
   check a --jsn b
 expect_usage "^holdfast check: there is no option '--x'\$" check a --x=1
 expect_usage "^holdfast: there is no option '--versoin'; did you mean '--version'" --versoin
-expect_usage "^holdfast next: the argument 'b' is not expected\$" next a b
+expect_usage "^holdfast next: the argument 'b' is one too many, expected FILE\$" next a b
+expect_usage "^holdfast move: the argument 'c' is one too many, expected FROM and TO\$" move a b c
+expect_usage "^holdfast check: there is no option '--hlep'; did you mean '--help'" check --hlep
+expect_usage "^holdfast check: '--json' stands before the command, options stand behind it\$" \
+  --json - check a
+expect_usage "^holdfast check: --svg: expected a value, found the option --json\$" \
+  check a --svg --json -
+expect_usage "^holdfast check: --json is given 2 times, expected once\$" check a --json b --json c
+expect_usage "^holdfast check: --limit-seconds requires --limit\$" check a --limit-seconds 5
+expect_usage "^holdfast generate: SIZE: expected a whole number, such as 20, found '1e3'\$" \
+  generate arm 1e3
+expect_usage "^holdfast: there is no command 'arm.json'; 'holdfast check arm.json' judges" arm.json
+expect_usage "^holdfast help: the argument 'a' is one too many, expected COMMAND\$" help check a
 expect_usage "^holdfast check: --json has no value, expected FILE\$" check a --json
 expect_usage "^holdfast check: --memory: expected a number from 0.01 to 1024, found 0\$" \
   check a --memory 0
-expect_usage "^holdfast check: --threads: expected a number from 0 to 64, found two\$" \
+expect_usage "^holdfast check: --threads: expected a whole number from 0 to 64, found two\$" \
   check a --threads two
 expect_usage "--link: expected v1, v2, catoms or unit, found 'v3'" simulate a --link v3
 expect_usage "--reach: expected free, line or surface, found 'srface'; did you mean 'surface'" \
@@ -625,6 +657,10 @@ expect_exit 64 generate cube -5
 expect_line err "'-5'|-5"
 expect_exit 64 generate cube 100000
 expect_refusal 'zero byte' /dev/zero
+printf '\377\376{\000' >utf16.json
+expect_refusal 'found UTF-16: save it as UTF-8' utf16.json
+python3 -c 'import socket; socket.socket(socket.AF_UNIX).bind("socket.json")'
+expect_refusal 'cannot be read: No such device or address' socket.json
 json '"name": "two\\nlines", "modules": [[0,0,0]]' >lines.json
 expect_exit 0 check lines.json --svg lines.svg
 expect_line out '^SAFE +two\\nlines$'

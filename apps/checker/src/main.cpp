@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -115,10 +117,15 @@ int show(const certificate::Certificate& made) {
 }
 
 int run(const char* path) {
+  if (std::filesystem::is_directory(path)) {
+    std::fprintf(stderr, "holdfast-checker: %s: expected a certificate, found a folder\n", path);
+    return 65;
+  }
+  errno = 0;
   std::ifstream file(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   if (!file) {
-    std::fprintf(stderr, "holdfast-checker: %s: not readable\n", path);
+    std::fprintf(stderr, "holdfast-checker: %s: cannot be read: %s\n", path, std::strerror(errno));
     return 65;
   }
   const certificate::Reading reading = certificate::read(text);
@@ -140,6 +147,10 @@ int main(int argc, char** argv) {
     std::fputs(kUsage, stdout);
     std::fputs(kHelp, stdout);
     return 0;
+  }
+  if (argv[1][0] == '-') {
+    std::fprintf(stderr, "holdfast-checker: there is no option '%s'\n%s", argv[1], kUsage);
+    return 64;
   }
   try {
     return run(argv[1]);

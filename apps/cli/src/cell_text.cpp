@@ -12,8 +12,13 @@ bool take_mark(std::string_view& text, char mark) {
 
 bool take_cell(std::string_view& text, base::Cell& cell) {
   const bool has_parentheses = take_mark(text, '(');
-  return take_number(text, cell.x) && take_mark(text, ',') && take_number(text, cell.y) &&
-         take_mark(text, ',') && take_number(text, cell.z) &&
+  const auto take_coordinate = [&](std::int32_t& coordinate) {
+    while (take_mark(text, ' ')) {
+    }
+    return take_number(text, coordinate);
+  };
+  return take_coordinate(cell.x) && take_mark(text, ',') && take_coordinate(cell.y) &&
+         take_mark(text, ',') && take_coordinate(cell.z) &&
          (!has_parentheses || take_mark(text, ')'));
 }
 

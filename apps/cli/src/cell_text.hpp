@@ -8,8 +8,8 @@
 
 #include "holdfast/holdfast.hpp"
 
-/// Cells as arguments of the program: "X,Y,Z", or "(X,Y,Z)" as reports write them. What is taken
-/// is removed from the front of the text.
+/// Cells as arguments of the program: "X,Y,Z", or "(X,Y,Z)" as reports write them, also with blanks
+/// before the numbers. What is taken is removed from the front of the text.
 namespace holdfast::cli {
 
 template <class Number>

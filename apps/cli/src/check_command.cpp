@@ -88,7 +88,7 @@ class CheckRun {
     ++counts_[static_cast<std::size_t>(result.assessment.verdict)];
     if (shows_text()) {
       show(structure, result, file);
-      fmt::print("{}", remedies && !is_many() ? remedies_text(*remedies) : "");
+      fmt::print("{}", remedies ? remedies_text(*remedies) : "");
     }
     add_report([&](std::ostream& out) {
       write_report_json(out, structure, result, report_options(options_.json),
@@ -332,12 +332,14 @@ Command add_check(CLI::App& app) {
              "Write the proof for holdfast-checker; implies --prove");
   command->add_flag("--prove", options->is_proof_wanted,
                     "Prove the largest load ratio; a verdict that is not proved is undecided");
-  command->add_flag("--limit", options->is_limit_wanted,
-                    "Seek the limit load: the largest factor that any forces could balance");
+  CLI::Option* const limit =
+      command->add_flag("--limit", options->is_limit_wanted,
+                        "Seek the limit load: the largest factor that any forces could balance");
   command
       ->add_option("--limit-seconds", options->limit_seconds,
                    "Most time for the limit load, s; then the report says what it lies between")
       ->check(number_between(0.0, 1e6))
+      ->needs(limit)
       ->capture_default_str();
   command->add_flag("--remedies", options->are_remedies_wanted,
                     "Seek what would make an unsafe structure hold: one more module, a prop, a "

@@ -117,10 +117,17 @@ inline void print_not_written(const std::string& file, const char* reason) {
 
 /// Says what is wrong with the name of a robot of the catalogue; empty if nothing is.
 inline std::string robot_name_fault(const std::string& name) {
-  return model::find_robot(name) != nullptr
-             ? std::string()
-             : fmt::format("the robot '{}' is none of the catalogue; holdfast robots lists it",
-                           io::one_line(name));
+  if (model::find_robot(name) != nullptr) {
+    return "";
+  }
+  std::vector<std::string_view> names;
+  for (const model::CatalogueRobot& robot : model::robot_catalogue()) {
+    names.push_back(robot.name);
+  }
+  const auto near = io::near_miss(name, names);
+  return fmt::format("the robot '{}' is none of the catalogue; {}", io::one_line(name),
+                     near ? fmt::format("did you mean '{}'?", *near)
+                          : fmt::format("expected {}", fmt::join(names, ", ")));
 }
 
 /// A document with a name: that of its file where it has none.

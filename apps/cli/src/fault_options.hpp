@@ -43,8 +43,10 @@ std::optional<std::vector<Fault>> read_faults(const std::vector<FaultOption<Faul
   for (const FaultOption<Fault>& option : options) {
     for (const std::string& text : option.texts) {
       const auto place = read_fault_place(text, option.has_face, structure);
-      if (!place) {
-        fmt::print(stderr, "holdfast: {}\n", fault_usage(option.name, text, option.has_face));
+      if (!place || place->module < 0) {
+        fmt::print(stderr, "holdfast: {}\n",
+                   !place ? fault_usage(option.name, text, option.has_face)
+                          : no_module(option.name, text, place->cell));
         return std::nullopt;
       }
       faults.push_back({.kind = option.kind,

@@ -32,9 +32,8 @@ bool take_time(std::string_view text, double& time) {
 
 std::optional<FaultPlace> read_fault_place(std::string_view text, bool has_face,
                                            const Structure& structure) {
-  base::Cell cell;
   FaultPlace place;
-  if (!take_cell(text, cell)) {
+  if (!take_cell(text, place.cell)) {
     return std::nullopt;
   }
   if (has_face) {
@@ -49,9 +48,9 @@ std::optional<FaultPlace> read_fault_place(std::string_view text, bool has_face,
   }
   const auto modules = structure.robot.modules();
   for (std::size_t i = 0; i < modules.size() - structure.robot.planned_count(); ++i) {
-    place.module = modules[i].cell == cell ? static_cast<std::int32_t>(i) : place.module;
+    place.module = modules[i].cell == place.cell ? static_cast<std::int32_t>(i) : place.module;
   }
-  return place.module >= 0 ? std::optional(place) : std::nullopt;
+  return place;
 }
 
 std::optional<ChangePlace> read_change_place(std::string_view text, bool allows_all) {
@@ -67,14 +66,20 @@ std::optional<ChangePlace> read_change_place(std::string_view text, bool allows_
 }
 
 std::string change_usage(std::string_view option, std::string_view text, bool allows_all) {
-  return fmt::format("--{} {}: expected X,Y,Z@TIME{}, as in 2,1,0@1.5", option, text,
+  return fmt::format("--{} {}: expected X,Y,Z@TIME{}, as in 2,1,0@1.5", option, io::one_line(text),
                      allows_all ? " or all@TIME" : "");
 }
 
 std::string fault_usage(std::string_view option, std::string_view text, bool has_face) {
-  return fmt::format("--{} {}: expected {}@TIME with the cell of an existing module, as in {}",
-                     option, text, has_face ? "X,Y,Z:FACE" : "X,Y,Z",
-                     has_face ? "2,1,0:+z@1.5" : "2,1,0@1.5");
+  return fmt::format(
+      "--{} {}: expected {}, as in {}", option, io::one_line(text),
+      has_face ? "X,Y,Z:FACE@TIME, FACE one of +x, -x, +y, -y, +z, -z" : "X,Y,Z@TIME",
+      has_face ? "2,1,0:+z@1.5" : "2,1,0@1.5");
+}
+
+std::string no_module(std::string_view option, std::string_view text, const base::Cell& cell) {
+  return fmt::format("--{} {}: no module is in {}, expected the cell of an existing module", option,
+                     io::one_line(text), model::text(cell));
 }
 
 }  // namespace holdfast::cli

@@ -12,12 +12,13 @@
 namespace holdfast::cli {
 
 struct FaultPlace {
-  std::int32_t module = -1;  ///< An existing one.
+  base::Cell cell;
+  std::int32_t module = -1;  ///< The existing one in the cell; -1 if there is none.
   base::Direction face = base::Direction::kPlusX;
   double time = 0;
 };
 
-/// Reads the place of a fault; none if the text is no place of an existing module and time.
+/// Reads the place of a fault; none if the text is no cell and time.
 std::optional<FaultPlace> read_fault_place(std::string_view text, bool has_face,
                                            const Structure& structure);
 
@@ -32,5 +33,6 @@ std::optional<ChangePlace> read_change_place(std::string_view text, bool allows_
 /// Says what is wrong with a text that is no such place.
 std::string change_usage(std::string_view option, std::string_view text, bool allows_all);
 std::string fault_usage(std::string_view option, std::string_view text, bool has_face);
+std::string no_module(std::string_view option, std::string_view text, const base::Cell& cell);
 
 }  // namespace holdfast::cli

@@ -172,18 +172,28 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
-std::string unexpected(const CLI::App& command) {
+/// What is said of an option that a command does not have; empty if it has all that are given.
+std::string unknown_option(const CLI::App& command) {
   for (const std::string& argument : command.remaining()) {
-    if (argument.starts_with('-')) {
+    if (argument.size() > 1 && argument.starts_with('-')) {
       const std::string name = argument.substr(0, argument.find('='));
       return fmt::format("there is no option '{}'{}", io::one_line(name),
                          did_you_mean(name, option_names(command)));
     }
   }
+  return "";
+}
+
+std::string one_too_many(const CLI::App& command) {
   const auto rest = command.remaining();
-  return rest.empty()
-             ? std::string("an argument is not expected")
-             : fmt::format("the argument '{}' is not expected", io::one_line(rest.front()));
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_positional()) {
+      names.push_back(option->get_name(true, false));
+    }
+  }
+  return fmt::format("the argument '{}' is one too many, expected {}",
+                     rest.empty() ? "" : io::one_line(rest.front()), fmt::join(names, " and "));
 }
 
 /// "a, b or c" of "a,b,c".
@@ -204,16 +214,20 @@ std::string reworded(const std::string& text) {
                        io::one_line(found.str(2)), did_you_mean(found.str(2), words));
   }
   if (std::regex_match(text, found, std::regex("(.*): Value (.*) not in range (.*) to (.*)"))) {
-    return fmt::format("{}: expected a number from {} to {}, found {}", found.str(1),
-                       std::stod(found.str(3)), std::stod(found.str(4)),
+    const bool is_whole = found.str(3).find('.') == std::string::npos;
+    return fmt::format("{}: expected a {}number from {} to {}, found {}", found.str(1),
+                       is_whole ? "whole " : "", std::stod(found.str(3)), std::stod(found.str(4)),
                        io::one_line(found.str(2)));
   }
   if (std::regex_match(text, found, std::regex("(.*): 1 required (.*) missing"))) {
     return fmt::format("{} has no value, expected {}", found.str(1), found.str(2));
   }
   if (std::regex_match(text, found, std::regex("Could not convert: (.*) = (.*)"))) {
-    return fmt::format("{}: expected a number, found '{}'", found.str(1),
+    return fmt::format("{}: expected a whole number, such as 20, found '{}'", found.str(1),
                        io::one_line(found.str(2)));
+  }
+  if (std::regex_match(text, found, std::regex("(.*): At Most 1 required but received (.*)"))) {
+    return fmt::format("{} is given {} times, expected once", found.str(1), found.str(2));
   }
   if (std::regex_match(text, found, std::regex("(.*) excludes (.*)"))) {
     return fmt::format("{} and {} exclude each other", found.str(1), found.str(2));
@@ -256,11 +270,16 @@ std::string HelpFormatter::make_help(const CLI::App* app, std::string /*name*/,
 
 std::string usage_error(const CLI::App& app, const CLI::Error& error) {
   const CLI::App& command = asked(app);
-  // CLI11 says first that a command is missing.
-  const bool is_unexpected =
-      error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError) ||
-      (&command == &app && !command.remaining().empty());
-  const std::string what = is_unexpected ? unexpected(command) : reworded(error.what());
+  const bool is_extra = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
+  // CLI11 says first what is missing; it may be missing because of a slip in an option.
+  std::string what = unknown_option(command);
+  if (what.empty() && &command != &app && !app.remaining().empty()) {
+    what = fmt::format("'{}' stands before the command, options stand behind it",
+                       io::one_line(app.remaining().front()));
+  }
+  if (what.empty()) {
+    what = is_extra ? one_too_many(command) : reworded(error.what());
+  }
   return fmt::format("{0}: {1}\nTry '{0} --help'.\n", full_name(command), what);
 }
 
@@ -270,8 +289,11 @@ std::string unknown_command(const CLI::App& app, std::string_view argument) {
     names.push_back(command->get_name());
   }
   const std::string near = did_you_mean(argument, names);
+  const bool is_file = argument.find_first_of("./") != std::string_view::npos;
   return fmt::format("holdfast: there is no command '{}'{}\n", io::one_line(argument),
-                     !near.empty() ? near : fmt::format("; there are {}", fmt::join(names, ", ")));
+                     !near.empty() ? near
+                     : is_file ? "; 'holdfast check " + io::one_line(argument) + "' judges a file"
+                               : fmt::format("; there are {}", fmt::join(names, ", ")));
 }
 
 }  // namespace holdfast::cli

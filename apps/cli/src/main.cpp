@@ -36,19 +36,28 @@ int show_help(const CLI::App& app, int argc, char** argv) {
     std::fputs(cli::unknown_command(app, name).c_str(), stderr);
     return holdfast::kExitUsage;
   }
+  if (argc > 3) {
+    fmt::print(stderr, "holdfast help: the argument '{}' is one too many, expected COMMAND\n",
+               holdfast::io::one_line(argv[3]));
+    return holdfast::kExitUsage;
+  }
   const CLI::App& command = name.empty() ? app : *app.get_subcommand(name);
   std::fputs(command.help().c_str(), stdout);
   return 0;
 }
 
 /// An empty value, such as that of a shell's variable that is not set, names no file and nothing
-/// else.
-void refuse_empty_values(CLI::App& app) {
+/// else; nor does the next option.
+void refuse_missing_values(CLI::App& app) {
   for (CLI::App* command : app.get_subcommands({})) {
     for (CLI::Option* option : command->get_options()) {
       if (option->get_items_expected_max() > 0) {
-        option->check([](const std::string& value) {
-          return std::string(value.empty() ? "the value is empty" : "");
+        option->check([command, is_named = !option->get_positional()](const std::string& value) {
+          const bool is_option = is_named && value.size() > 1 && value.starts_with('-') &&
+                                 command->get_option_no_throw(value) != nullptr;
+          return value.empty() ? std::string("the value is empty")
+                 : is_option   ? "expected a value, found the option " + value
+                               : std::string();
         });
       }
     }
@@ -79,7 +88,7 @@ int run(int argc, char** argv) {
                   .notes = "holdfast help COMMAND, or holdfast COMMAND --help, says more about a "
                            "command.",
                   .exits = {}});
-  refuse_empty_values(app);
+  refuse_missing_values(app);
   const std::string first = argc > 1 ? argv[1] : "";
   if (first == "help") {
     return show_help(app, argc, argv);
