@@ -47,10 +47,8 @@ Command add_generate(CLI::App& app) {
       "generate", "Write one of the structures in which solvers are compared, of any size");
   add_required(*command, "FAMILY", options->family, "One of the families below");
   add_required(*command, "SIZE", options->size, "How large; see the families below");
-  command
-      ->add_option("-o,--output", options->to,
-                   "File to write, .json, .xml or .holdfast; - is standard output")
-      ->type_name("FILE");
+  add_output(*command, "-o,--output", options->to,
+             "File to write, .json, .xml or .holdfast; - is standard output");
   std::string notes = "Families:\n";
   for (const auto& [name, help] : family_list()) {
     notes += fmt::format("  {:<12}{}\n", name, help);

@@ -71,6 +71,7 @@ struct Structure {
   io::Document document;
   model::Robot robot;
   std::vector<std::string> warnings;
+  io::ReportOrigin origin = {};  ///< What its reports say of where it is from.
 };
 
 /// A robot's cells where a program keeps them, in any order; as model::RobotSpec, but only looked
@@ -224,7 +225,7 @@ void write_connections_csv(std::ostream& out, const Structure& structure, const 
                            const io::ReportOptions& options = {});
 
 /// The entry of a JSON report for a file that could not be checked: {"name", "error", "where"}.
-std::string error_json(const base::Error& error, std::string_view name);
+std::string error_json(const base::Error& error, const io::ReportOrigin& origin);
 
 /// One line for people: "FILE: line 12: message".
 std::string describe(const base::Error& error, std::string_view file);
