@@ -145,9 +145,8 @@ base::Result<Structure> load_file(const std::filesystem::path& path, int thread_
 base::Result<Structure> make_structure(io::Document document, std::string_view name = {},
                                        int thread_count = 0);
 
-/// One of the named structures in which solvers are compared: arm, cube, tower, scaffold, shell,
-/// portal, bridge, growth of cubes, ball, sheet, prism-wall of other lattices. Errors: no such
-/// family, a size that is not allowed.
+/// One of the structures of model::families(), to begin with or to compare solvers in: arm, arch,
+/// crane, stairs and more. Errors: no such family, a size that is not allowed.
 base::Result<io::Document> generate(std::string_view family, std::size_t size);
 
 /// The name of each family and the meaning of its size, in the order of their list.
