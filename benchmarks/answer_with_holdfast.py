@@ -39,8 +39,9 @@ def row_of_check(report):
            'margin_mm': report['stability']['simplified']['margin_mm'],
            'tilt_margin_deg': rigid['tilt_margin_deg']}
     if 'limit_load' in report:
-        row['limit_load_factor'] = (report['limit_load_factor'] or
-                                    report['limit_load']['outcome'].replace('stopped', ''))
+        row['limit_load_factor'] = report['limit_load_factor']
+        if report['limit_load']['outcome'] == 'unbounded':
+            row['limit_load_factor'] = 'unbounded'
     return row
 
 

@@ -39,7 +39,7 @@ class Refused(Exception):
 
 def close_to(word, words):
     near = difflib.get_close_matches(str(word), words, 1)
-    return f"did you mean '{near[0]}'?" if near else f'there are {", ".join(list(words)[:9])}'
+    return f"did you mean '{near[0]}'?" if near else f'expected one of {", ".join(list(words)[:9])}'
 
 
 def read_rows(text):
@@ -108,6 +108,9 @@ def read_answers(text, known):
             if key not in COLUMNS:
                 raise Refused(f"{where}: the column '{key}' is unknown: "
                               f'{close_to(key, COLUMNS)}')
+        if not {'name', 'verdict'} <= row.keys():
+            raise Refused(f'{where}: expected name and verdict among the columns, found '
+                          f'{", ".join(row)}: the first line of a CSV names its columns')
         name = str(row.get('name', '')).strip()
         if name not in known:
             raise Refused(f"{where}: no structure is named '{name}': {close_to(name, known)}")
@@ -204,6 +207,8 @@ def parse_arguments():
     arguments = parser.parse_args()
     if not arguments.tolerance > 0:
         parser.error(f'argument --tolerance: expected more than 0, found {arguments.tolerance:g}')
+    if arguments.worst < 0:
+        parser.error(f'argument --worst: expected 0 or more, found {arguments.worst}')
     return parser, arguments
 
 
@@ -216,9 +221,10 @@ def main():
         parser.error(f"argument --kind: '{arguments.kind}' is unknown: "
                      f'{close_to(arguments.kind, kinds)}')
     try:
-        text = (sys.stdin.read() if arguments.answers == '-'
-                else pathlib.Path(arguments.answers).read_text(encoding='utf-8-sig'))
-        given = read_answers(text, {answer['name']: answer for answer in answers})
+        data = (sys.stdin.buffer.read() if arguments.answers == '-'
+                else pathlib.Path(arguments.answers).read_bytes())
+        known = {answer['name']: answer for answer in answers}
+        given = read_answers(data.decode('utf-8-sig'), known)
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, 'strerror', None) or 'it is not UTF-8'
         print(f'score.py: {arguments.answers}: {reason}: name a CSV or JSON file', file=sys.stderr)

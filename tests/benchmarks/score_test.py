@@ -60,6 +60,7 @@ def check_wrong_answers(scorer, rows):
 
     ratio = rows['arm_4']['load_ratio_max']
     scorer.expect('all right', 0, as_csv(rows.values()))
+    scorer.expect('a byte order mark', 0, '\ufeff' + as_csv(rows.values()))
     scorer.expect('JSON, a list', 0, json.dumps(list(rows.values())))
     scorer.expect('JSON, by name', 0, json.dumps(
         {name: {key: row[key] for key in row if key != 'name'} for name, row in rows.items()}))
@@ -99,6 +100,7 @@ def check_refusals(scorer):
             ('a short line', 'name,verdict,at\narm_4,safe\n', 'expected 3 values'),
             ('cells', 'name,verdict,at\narm_4,safe,root\narm_3,safe,1 2\n', 'expected two cells'),
             ('a stage', 'name,verdict,first_unsafe\narm_grows,safe,3\n', "'3 connect'"),
+            ('no names', 'verdict\nsafe\n', 'expected name and verdict among the columns'),
             ('nothing', 'name,verdict\n', 'found no answer'),
             ('JSON', '[{"name": "arm_4",]', 'line 1: no JSON'),
             ('no objects', '[3]', 'answer 1: expected an object')):
@@ -106,6 +108,7 @@ def check_refusals(scorer):
     scorer.expect('an option', 64, '', 'unrecognized', '--strict')
     scorer.expect('a kind', 64, '', "did you mean 'arms'?", '--kind', 'arm')
     scorer.expect('a tolerance', 64, '', 'more than 0', '--tolerance', '0')
+    scorer.expect('a count', 64, '', 'expected 0 or more', '--worst', '-1')
     scorer.expect('help', 0, '', 'exit status', '--help')
 
 
