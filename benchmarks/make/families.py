@@ -203,7 +203,7 @@ def slopes():
             'safe' if angle < limit else 'unstable', figures=figures,
             formula='slides where tan(slope) > friction, tips where it is > 1 / n',
             floor={'friction': friction},
-            gravity_m_s2=[G * math.sin(angle), 0, -G * math.cos(angle)])
+            gravity_m_s2=[round(G * math.sin(angle), 12), 0, round(-G * math.cos(angle), 12)])
 
 
 def slippery():
