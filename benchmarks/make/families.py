@@ -334,7 +334,7 @@ def limits():
             material={'strength_n': 1e3},
             kinds={'left': {'torsion_strength_nmm': left, 'strength_n': 1e3},
                    'right': {'torsion_strength_nmm': right, 'strength_n': 1e3}})
-    for left, right in ((2.0, 2.0), (1.0, 3.0)):
+    for left, right in ((2.0, 2.0), (1.25, 3.0)):
         add('limit loads', f'limit_shear_{left:g}_{right:g}', ends,
             by_ratio(1 / min(left, right)),
             formula='each end takes half of 2 N; at the limit both give what they have',

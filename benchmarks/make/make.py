@@ -252,7 +252,7 @@ def documents():
                      key=lambda answer: (kinds.index(answer['kind']), answer['name']))
     files = {HERE / 'structures' / f'{name}.json': wrapped(structure, 0) + '\n'
              for name, (_, structure) in book.items()}
-    lines = ',\n'.join('  ' + wrapped(answer, 2) for answer in answers)
+    lines = ',\n'.join('  ' + json.dumps(answer) for answer in answers)
     files[HERE / 'answers.json'] = (
         '{"format": "holdfast-benchmarks", "version": 1,\n "tolerances": '
         f'{wrapped(TOLERANCES, 1)},\n "answers": [\n{lines}\n]}}\n')
