@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/agent.hpp"
 
-#include "beams.hpp"
-#include "holdfast/agent/messages.hpp"
-#include "kept_changes.hpp"
+#include "equilibrium/beams.hpp"
+#include "equilibrium/kept_changes.hpp"
+#include "holdfast/agent/messages/messages.hpp"
 #include "methods.hpp"
 
 namespace holdfast::agent {
@@ -43,6 +43,9 @@ Agent::Agent(const Setup& setup, const Identity& identity, const LentMemory* len
     announcements_.lend(&more->announced);
   }
 #endif
+  if (kJudgesFaces && ws_.free_faces() != nullptr) {
+    ws_.free_faces()->forget();
+  }
 }
 
 // ---- An event comes in.

@@ -4,10 +4,10 @@
 // What changes after a verdict. A module that is told of a plan, or finds a new neighbour,
 // withdraws its verdict and tells the root, which begins the next one from what all modules keep
 // (conductor/renewal.hpp). Whatever does not fit, here or on the way, is left to a new round.
+#include "equilibrium/kept_changes.hpp"
+#include "equilibrium/survey.hpp"
 #include "holdfast/agent/agent.hpp"
-#include "holdfast/agent/deflation.hpp"
-#include "kept_changes.hpp"
-#include "survey.hpp"
+#include "holdfast/agent/equilibrium/deflation.hpp"
 
 namespace holdfast::agent {
 namespace {

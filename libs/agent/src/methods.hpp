@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "holdfast/agent/wire.hpp"
+#include "holdfast/agent/wire/wire.hpp"
 
 /// Does the program have all methods (method.hpp)? One with HOLDFAST_AGENT_ONE_SWEEP_ONLY, for
 /// modules with little flash, has elimination and the polynomial: what takes one sweep an iteration

@@ -4,7 +4,7 @@
 // What a module keeps of what it was told. The rules are those of announcements.hpp: what a module
 // itself was told last holds; between modules a plan that the robot knows is older than a
 // withdrawal.
-#include "holdfast/agent/announcements.hpp"
+#include "holdfast/agent/groups/announcements.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Elimination over a tree with loops, beside a dense solve of the whole robot.
-#include "holdfast/agent/branch.hpp"
+#include "holdfast/agent/algebra/branch.hpp"
 
 #include <gtest/gtest.h>
 

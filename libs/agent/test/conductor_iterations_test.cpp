@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "drive.hpp"
-#include "holdfast/agent/deflation.hpp"
+#include "holdfast/agent/equilibrium/deflation.hpp"
 #include "holdfast/base/rng.hpp"
 
 namespace holdfast::agent {

@@ -3,9 +3,9 @@
 //
 // The root's part of deflation against a dense model: a stiffness with two slow modes, of which
 // three changes of displacement have something in them. The modules' part is simulated as
-// src/minimal_residuals.hpp has it: what they know of a direction is without its part along the
+// minimal_residuals.hpp has it: what they know of a direction is without its part along the
 // changes, and numbers go over the wire as binary32.
-#include "holdfast/agent/deflation.hpp"
+#include "holdfast/agent/equilibrium/deflation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "holdfast/agent/conductor.hpp"
+#include "holdfast/agent/conductor/conductor.hpp"
 #include "test_setup.hpp"
 
 /// A conductor driven order by order, from reports made by hand: no robot and no mechanics.

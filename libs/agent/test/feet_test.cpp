@@ -4,7 +4,7 @@
 // Does it topple, in whole numbers? Expected values: the centre of mass against the convex hull of
 // all corners (second method, for small robots), and closed forms for rows that are as long as
 // rows can be.
-#include "holdfast/agent/feet.hpp"
+#include "holdfast/agent/cells/feet.hpp"
 
 #include <gtest/gtest.h>
 

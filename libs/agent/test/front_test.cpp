@@ -3,7 +3,7 @@
 //
 // A front's algebra beside a dense Schur complement; the root's contact problem by its own
 // equations.
-#include "holdfast/agent/front.hpp"
+#include "holdfast/agent/equilibrium/front.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,10 +13,10 @@
 #include <cmath>
 #include <vector>
 
-#include "facets.hpp"
-#include "holdfast/agent/front_contact.hpp"
+#include "holdfast/agent/methods/front_contact.hpp"
 #include "holdfast/base/rng.hpp"
 #include "test_setup.hpp"
+#include "world/facets.hpp"
 
 namespace holdfast::agent {
 namespace {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "holdfast/agent/wire.hpp"
+#include "holdfast/agent/wire/wire.hpp"
 #include "holdfast/base/cell.hpp"
 
 /// Golden text of the wire format, written by hand from docs/wire.md, which shows the same lines.

@@ -4,7 +4,7 @@
 // Two ends of a line, over a channel that loses, doubles, swaps and spoils packets. What must hold
 // is said by link.hpp: messages arrive once, whole and in order, or the link is lost. Times are the
 // default ones, in microseconds; expected times are sums of them, written out.
-#include "holdfast/agent/link.hpp"
+#include "holdfast/agent/wire/link.hpp"
 
 #include <gtest/gtest.h>
 

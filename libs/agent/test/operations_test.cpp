@@ -3,7 +3,7 @@
 //
 // The table of operations against docs/wire.md: its names, in its order, and how often an order
 // exchanges, from the column "exchanges" there.
-#include "holdfast/agent/operations.hpp"
+#include "holdfast/agent/wire/operations.hpp"
 
 #include <gtest/gtest.h>
 

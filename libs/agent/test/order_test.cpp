@@ -5,7 +5,7 @@
 // they come nor on the tree: merging is commutative and associative wherever the numbers are exact.
 // The bytes themselves are tested in wire_test.cpp. Comparisons are of all that goes on the wire,
 // as bytes; a report that has been decoded holds nothing else.
-#include "holdfast/agent/order.hpp"
+#include "holdfast/agent/messages/order.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,8 +14,8 @@
 #include <set>
 #include <string>
 
-#include "holdfast/agent/operations.hpp"
-#include "holdfast/agent/step_word.hpp"
+#include "holdfast/agent/cells/step_word.hpp"
+#include "holdfast/agent/wire/operations.hpp"
 #include "holdfast/base/rng.hpp"
 #include "test_setup.hpp"
 

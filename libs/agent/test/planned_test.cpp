@@ -4,7 +4,7 @@
 // Who emulates planned modules. Robots of a few modules with trees drawn by hand; the test plays
 // the sweep: masks go up the tree, their union comes down. Expected hosts are the lowest common
 // ancestors of the participants, read off the drawings.
-#include "holdfast/agent/planned.hpp"
+#include "holdfast/agent/groups/planned.hpp"
 
 #include <gtest/gtest.h>
 

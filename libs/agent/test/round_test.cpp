@@ -3,7 +3,7 @@
 //
 // Which of two rounds is newer: serial number arithmetic [RFC1982], and a robot that has lived
 // through more rounds than 16 bits can count.
-#include "holdfast/agent/round.hpp"
+#include "holdfast/agent/wire/round.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/conductor/face_judging.hpp"
 
-#include "holdfast/agent/occupied_cells.hpp"
+#include "algebra/tolerances.hpp"
+#include "conductor/orders.hpp"
+#include "holdfast/agent/cells/occupied_cells.hpp"
 #include "methods.hpp"
-#include "orders.hpp"
-#include "tolerances.hpp"
 
 namespace holdfast::agent {
 

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/conductor/iterations.hpp"
 
+#include "algebra/scalar.hpp"
+#include "algebra/tolerances.hpp"
+#include "conductor/orders.hpp"
 #include "methods.hpp"
-#include "orders.hpp"
-#include "scalar.hpp"
-#include "tolerances.hpp"
 
 namespace holdfast::agent {
 namespace {

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/conductor/law.hpp"
 
+#include "algebra/scalar.hpp"
+#include "algebra/tolerances.hpp"
+#include "conductor/orders.hpp"
 #include "holdfast/mechanics/connector.hpp"
 #include "methods.hpp"
-#include "orders.hpp"
-#include "scalar.hpp"
-#include "tolerances.hpp"
 
 namespace holdfast::agent {
 

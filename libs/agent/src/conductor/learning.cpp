@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/conductor/learning.hpp"
 
-#include "holdfast/agent/feet.hpp"
-#include "holdfast/agent/stages.hpp"
+#include "conductor/orders.hpp"
+#include "holdfast/agent/cells/feet.hpp"
+#include "holdfast/agent/world/stages.hpp"
 #include "methods.hpp"
-#include "orders.hpp"
 
 namespace holdfast::agent {
 namespace {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "holdfast/agent/conductor/whole.hpp"
-#include "holdfast/agent/order.hpp"
+#include "holdfast/agent/messages/order.hpp"
 
 /// Orders that several of the conductor's strategies make.
 namespace holdfast::agent {

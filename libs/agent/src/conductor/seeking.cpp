@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/conductor/seeking.hpp"
 
+#include "conductor/orders.hpp"
 #include "holdfast/mechanics/connector.hpp"
 #include "methods.hpp"
-#include "orders.hpp"
 
 namespace holdfast::agent {
 namespace {

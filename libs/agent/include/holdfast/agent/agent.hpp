@@ -6,15 +6,15 @@
 #include <cstdint>
 #include <span>
 
-#include "holdfast/agent/announcements.hpp"
 #include "holdfast/agent/colour.hpp"
-#include "holdfast/agent/conductor.hpp"
-#include "holdfast/agent/free_faces.hpp"
-#include "holdfast/agent/rounds.hpp"
+#include "holdfast/agent/conductor/conductor.hpp"
+#include "holdfast/agent/equilibrium/workspace.hpp"
+#include "holdfast/agent/free_faces/free_faces.hpp"
+#include "holdfast/agent/groups/announcements.hpp"
+#include "holdfast/agent/methods/sweep.hpp"
 #include "holdfast/agent/setup.hpp"
-#include "holdfast/agent/sweep.hpp"
-#include "holdfast/agent/watch.hpp"
-#include "holdfast/agent/workspace.hpp"
+#include "holdfast/agent/tree/rounds.hpp"
+#include "holdfast/agent/tree/watch.hpp"
 
 /// The program that every module of the robot runs. One object per module, one function: step().
 ///

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "holdfast/agent/order.hpp"
+#include "holdfast/agent/messages/order.hpp"
 
 namespace holdfast::agent {
 

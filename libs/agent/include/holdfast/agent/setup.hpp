@@ -5,9 +5,9 @@
 #include <array>
 #include <cstdint>
 
-#include "holdfast/agent/lattice_beams.hpp"
-#include "holdfast/agent/lattices.hpp"
-#include "holdfast/agent/link.hpp"
+#include "holdfast/agent/algebra/lattice_beams.hpp"
+#include "holdfast/agent/cells/lattices.hpp"
+#include "holdfast/agent/wire/link.hpp"
 #include "holdfast/mechanics/beam.hpp"
 
 namespace holdfast::agent {

@@ -5,13 +5,13 @@
 #include <array>
 #include <cstdint>
 
+#include "holdfast/agent/conductor/energy_bound.hpp"
 #include "holdfast/agent/conductor/law.hpp"
 #include "holdfast/agent/conductor/whole.hpp"
-#include "holdfast/agent/deflation.hpp"
-#include "holdfast/agent/energy_bound.hpp"
+#include "holdfast/agent/equilibrium/deflation.hpp"
 
 /// The iterations of an equilibrium as the root sees them: from the sums of one iteration to the
-/// coefficients of the next (src/minimal_residuals.hpp), and when to stop.
+/// coefficients of the next (minimal_residuals.hpp), and when to stop.
 namespace holdfast::agent {
 
 /// How good the last judgement was, and is to be.

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "holdfast/agent/conductor/whole.hpp"
-#include "holdfast/agent/stages.hpp"
+#include "holdfast/agent/world/stages.hpp"
 
 namespace holdfast::agent {
 

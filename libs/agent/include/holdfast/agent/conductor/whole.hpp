@@ -5,10 +5,10 @@
 #include <array>
 #include <cstdint>
 
-#include "holdfast/agent/order.hpp"
-#include "holdfast/agent/planned.hpp"
+#include "holdfast/agent/groups/planned.hpp"
+#include "holdfast/agent/messages/order.hpp"
 #include "holdfast/agent/setup.hpp"
-#include "holdfast/agent/surroundings.hpp"
+#include "holdfast/agent/world/surroundings.hpp"
 
 namespace holdfast::agent {
 
