@@ -21,28 +21,22 @@ bool fits_exact_check(const Setup& setup, std::int64_t mass) {
          setup.facet_denominator <= kFacetPartMax;
 }
 
-bool fits_plane_check([[maybe_unused]] const Setup& setup, [[maybe_unused]] std::int64_t pressure,
-                      [[maybe_unused]] std::uint32_t module_count,
-                      [[maybe_unused]] std::uint16_t extent) {
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-  return false;
-#else
+bool fits_plane_check(const Setup& setup, std::int64_t pressure, std::uint32_t module_count,
+                      std::uint16_t extent) {
   const std::int64_t reach = std::int64_t{kPlaneParts} * (extent + 2);
   return setup.has_plane && fits_exact_check(setup, pressure) && reach < kExtentMax &&
          pressure >= module_count * reach;
-#endif
 }
 
 namespace {
 
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
-
 bool has_rows(const Setup& setup) {
-  return !setup.has_plane && setup.lattice == base::kHexagonalPrism;
+  return kIsGeneral && !setup.has_plane && setup.lattice == base::kHexagonalPrism;
 }
 
 bool has_layers(const Setup& setup) {
-  return !setup.has_plane && (setup.lattice.shear_x != 0 || setup.lattice.shear_y != 0);
+  return kIsGeneral && !setup.has_plane &&
+         (setup.lattice.shear_x != 0 || setup.lattice.shear_y != 0);
 }
 
 /// Along an axis of the plane of supports, in its parts.
@@ -53,45 +47,35 @@ std::int32_t plane_place(const Setup& setup, std::size_t axis, const base::Cell&
   return static_cast<std::int32_t>(parts < 0 ? parts - 0.5 : parts + 0.5);
 }
 
-#endif
-
 /// Half of a facet's width is Setup::facet_numerator of these.
 std::int64_t parts_of_cell(const Setup& setup) {
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-  return 2 * std::int64_t{setup.facet_denominator};
-#else
   const int halves = has_rows(setup) || has_layers(setup) ? 1 : 2;
   return setup.has_plane ? 1 : std::int64_t{halves} * setup.facet_denominator;
-#endif
 }
 
 /// Half of a facet's width.
 std::int64_t half_parts_of_facet(const Setup& setup) {
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
   if (setup.has_plane) {
     return kPlaneDoubt + 1 +
            std::int64_t{kPlaneParts} * setup.facet_numerator / (2 * setup.facet_denominator);
   }
-#endif
   return setup.facet_numerator;
 }
 
 /// From one row of cells along x to the next.
-FloorLength parts_of_row(const Setup& setup) {
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
-  if (has_rows(setup)) {
-    return {0, parts_of_cell(setup)};
+template <class Length = FloorLength>
+Length parts_of_row(const Setup& setup) {
+  if constexpr (kIsGeneral) {
+    return has_rows(setup) ? Length{0, parts_of_cell(setup)} : Length{parts_of_cell(setup)};
+  } else {
+    return parts_of_cell(setup);
   }
-#endif
-  return parts_of_cell(setup);
 }
 
 }  // namespace
 
-base::Cell floor_place([[maybe_unused]] const Setup& setup, const base::Cell& cell,
-                       const base::Cell& from) {
+base::Cell floor_place(const Setup& setup, const base::Cell& cell, const base::Cell& from) {
   base::Cell away = {cell.x - from.x, cell.y - from.y, cell.z - from.z};
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
   if (setup.has_plane) {
     return {plane_place(setup, 0, cell) - plane_place(setup, 0, from),
             plane_place(setup, 1, cell) - plane_place(setup, 1, from), 0};
@@ -103,7 +87,6 @@ base::Cell floor_place([[maybe_unused]] const Setup& setup, const base::Cell& ce
   } else if (has_rows(setup)) {
     away.x = 2 * away.x + away.y;
   }
-#endif
   return away;
 }
 
@@ -111,11 +94,8 @@ FeetCheck::FeetCheck(const Setup& setup, std::int32_t mass,
                      const std::array<std::int32_t, 2>& moment)
     : pitch_(parts_of_cell(setup) * mass),
       half_width_(half_parts_of_facet(setup) * mass),
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
       pitch_y_(parts_of_row(setup) * mass),
-#endif
-      mass_{parts_of_cell(setup) * moment[0], parts_of_row(setup) * moment[1]} {
-}
+      mass_{parts_of_cell(setup) * moment[0], parts_of_row(setup) * moment[1]} {}
 
 SafeCorners FeetCheck::of_foot(std::int32_t x, std::int32_t y) const {
   const Vector centre = {x * pitch_ - mass_.x, y * pitch_y() - mass_.y};

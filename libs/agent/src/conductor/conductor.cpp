@@ -5,8 +5,8 @@
 #include "algebra/scalar.hpp"
 #include "algebra/tolerances.hpp"
 #include "conductor/orders.hpp"
+#include "holdfast/agent/features.hpp"
 #include "messages/resume_masks.hpp"
-#include "methods.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -52,31 +52,14 @@ void choose_method(const Setup& setup, Whole& whole, Law& law, bool is_newton) {
 }
 
 /// Does a facet slip, or may it?
-bool may_slip([[maybe_unused]] const Report& report) {
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-  return false;
-#else
-  return (report.remarks & kFacetSlips) != 0;
-#endif
-}
-
-/// Do supports hold by friction, so that forces say whether they slip?
-bool has_friction([[maybe_unused]] const Setup& setup) {
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-  return false;
-#else
-  return setup.has_friction;
-#endif
-}
+bool may_slip(const Report& report) { return (report.remarks & kFacetSlips) != 0; }
 
 /// The worst connection, as everybody will know it.
 void note_worst(Answer& answer, const Report& report) {
   answer.load_ratio_max = report.worst_load_ratio();
   answer.worst_cell = report.cell;
   answer.worst_direction = report.direction;
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
   answer.remarks = report.remarks & (kLimitBits | kGapOpens);
-#endif
 }
 
 bool keeps_displacements(Method method) {
@@ -157,16 +140,16 @@ Order Conductor::choose(const Setup& setup, const Report& report, const Planned&
     case Operation::kLoads:
       return after_loads(setup, report);
     case Operation::kShape:
-      if (const Order next = kJudgesFaces ? faces.after_shape(whole, report, answer.verdict,
-                                                              iterations.accuracy.error)
-                                          : Order{};
+      if (const Order next = kKeepsAnswers ? faces.after_shape(whole, report, answer.verdict,
+                                                               iterations.accuracy.error)
+                                           : Order{};
           next.operation != Operation{}) {
         return next;
       }
       break;
     case Operation::kSeek:
-      return kSeeksOthers ? follow(setup, seeking.after_seek(whole, report, iterations.newton))
-                          : Order{};
+      return kHasAllMethods ? follow(setup, seeking.after_seek(whole, report, iterations.newton))
+                            : Order{};
     case Operation::kNext:
       break;
     default:
@@ -177,7 +160,7 @@ Order Conductor::choose(const Setup& setup, const Report& report, const Planned&
 
 /// The robot is known, or in a later scene of a stage its loads are.
 Order Conductor::after_mass(const Setup& setup, const Report& report) {
-  if (kJudgesStages && whole.is_resumed) {
+  if (kKeepsAnswers && whole.is_resumed) {
     if (report.count != whole.census) {
       return undecided(Reason::kNeighbourSilent);
     }
@@ -194,7 +177,7 @@ Order Conductor::after_mass(const Setup& setup, const Report& report) {
 
 Order Conductor::begin_law(const Setup& setup, bool is_unilateral) {
   const bool is_renewed = asked == Operation::kRenew ||
-                          (kJudgesStages && whole.is_resumed && asked == Operation::kMass);
+                          (kKeepsAnswers && whole.is_resumed && asked == Operation::kMass);
   renewal.has_motion = renewal.has_motion && is_renewed;
   renewal.has_factors = renewal.has_factors && is_renewed;
   whole.effort.is_unilateral = is_unilateral;
@@ -412,7 +395,7 @@ Order Conductor::after_corners(const Setup& setup, bool is_standing) {
   if (seeking.is_active()) {
     return follow(setup, seeking.after_corners(is_standing));
   }
-  if (kHasSurroundings && law.is_comparing()) {
+  if (kIsGeneral && law.is_comparing()) {
     // With open feet freed, without which only weak springs may hold the robot.
     return is_standing ? decide() : undecided(Reason::kAmbiguousFeet);
   }
@@ -426,7 +409,7 @@ Order Conductor::after_corners(const Setup& setup, bool is_standing) {
                              : begin_law(setup, true);
   }
   // Whether facets slip is asked of both laws.
-  return law.is_second() && has_friction(setup) ? order_of(Operation::kLoads) : release_open();
+  return law.is_second() && setup.has_friction ? order_of(Operation::kLoads) : release_open();
 }
 
 /// A verdict by weak springs that may pull is given only if the law without them agrees.
@@ -451,7 +434,7 @@ Order Conductor::conclude(const Setup& setup, const Report& worst) {
   if (whole.effort.is_unilateral) {
     return law.is_any_held_open() ? law.free_open_feet() : decide();
   }
-  if (kSeeksOthers &&
+  if (kHasAllMethods &&
       (seeking.other_fails() || seeking.is_doubted(whole, law, iterations.accuracy.ratio))) {
     return undecided(Reason::kAmbiguousFeet);
   }

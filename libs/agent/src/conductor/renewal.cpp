@@ -37,7 +37,7 @@ struct Place {
 };
 
 Place place_of(const Setup& setup, const Environment* environment, const base::Cell& cell) {
-  if (!kHasSurroundings || environment == nullptr) {
+  if (!kIsGeneral || environment == nullptr) {
     return {.is_ground = cell.z == setup.support_z};
   }
   Surroundings there;

@@ -15,8 +15,6 @@ double ratio_of(const Setup& setup, const MiddleLoad& load, Direction direction)
                                strength_n(setup, direction));
 }
 
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
-
 /// The force in the middle of a connection of this module, or between planned ones emulated here.
 base::Vec6<double> force_in_middle(const Workspace& ws, const base::Cell& cell,
                                    Direction direction) {
@@ -45,26 +43,19 @@ mechanics::LimitRatio lawful_ratio(const Workspace& ws, const base::Cell& cell,
       law, mechanics::connection_force(law, force_in_middle(ws, cell, direction), length));
 }
 
-#endif
-
 /// By Eq. (17), but where connections have laws of their own.
 double ratio_of(const Workspace& ws, const base::Cell& cell, Direction direction,
                 const MiddleLoad& load) {
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
   if (ws.across() != nullptr) {
     return lawful_ratio(ws, cell, direction).ratio;
   }
-#endif
-  static_cast<void>(cell);
   return ratio_of(ws.setup, load, direction);
 }
 
 }  // namespace
 
-std::uint8_t remarks_on([[maybe_unused]] const Workspace& ws,
-                        [[maybe_unused]] const base::Cell& cell,
-                        [[maybe_unused]] Direction direction, [[maybe_unused]] double ratio) {
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+std::uint8_t remarks_on(const Workspace& ws, const base::Cell& cell, Direction direction,
+                        double ratio) {
   if (ws.across() != nullptr) {
     const bool has_hanging = ws.stage() == Stage::kShift && cell == ws.tree.cell();
     if (mechanics::Limit limit{};
@@ -77,7 +68,6 @@ std::uint8_t remarks_on([[maybe_unused]] const Workspace& ws,
     const auto limit = static_cast<unsigned>(lawful_ratio(ws, cell, direction).limit);
     return static_cast<std::uint8_t>(limit | (gap > law.gap_limit_mm ? kGapOpens : 0U));
   }
-#endif
   return 0;
 }
 

@@ -123,8 +123,7 @@ Along<double> Deflation::solve(const Along<double>& sums) const {
   return result;
 }
 
-void Deflation::begin(const Along<float>& residual,
-                      const std::array<float, wire::kKeptPairs>& energies) {
+void Deflation::begin(const Along<float>& residual, const Energies& energies) {
   std::size_t pair = 0;
   for (std::size_t i = 0; i < energy_.size(); ++i) {
     for (std::size_t j = 0; j <= i; ++j) {

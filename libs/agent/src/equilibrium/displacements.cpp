@@ -6,7 +6,7 @@
 #include "equilibrium/beams.hpp"
 #include "equilibrium/kept_changes.hpp"
 #include "equilibrium/stage_load.hpp"
-#include "methods.hpp"
+#include "holdfast/agent/features.hpp"
 #include "world/facets.hpp"
 
 namespace holdfast::agent {
@@ -87,7 +87,7 @@ void report_facet(Report& report, const Workspace& ws, int index) {
   if (node.state.tilt_x != 0 || node.state.tilt_y != 0) {
     report.flags |= kAnyTilting;
   }
-  if (kSeeksOthers && !ws.setup.only_one_sweep && is_doubtful(ws.contact, node.state, node.u)) {
+  if (kHasAllMethods && !ws.setup.only_one_sweep && is_doubtful(ws.contact, node.state, node.u)) {
     report.flags |= kMayDiffer;
   }
 }

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "holdfast/agent/equilibrium/workspace.hpp"
+#include "holdfast/agent/features.hpp"
 #include "holdfast/agent/messages/order.hpp"
-#include "methods.hpp"
 #include "world/facets.hpp"
 
 /// What several methods do at the begin of an equilibrium and around an exchange of displacements,

@@ -6,7 +6,7 @@
 #include "equilibrium/stage_load.hpp"
 #include "equilibrium/survey.hpp"
 #include "holdfast/agent/equilibrium/deflation.hpp"
-#include "methods.hpp"
+#include "holdfast/agent/features.hpp"
 #include "world/facets.hpp"
 
 namespace holdfast::agent {
@@ -15,22 +15,6 @@ Deflation* deflation_of(const Workspace& ws) {
   KeptChanges* kept = ws.kept_changes();
   return kept == nullptr ? nullptr : &kept->deflation;
 }
-
-#ifdef HOLDFAST_AGENT_STARTS_AFRESH
-
-void hear_change(Workspace&, Direction, int, const base::Vec6<float>&) {}
-
-void begin_change(Workspace&, const Order&) {}
-
-void share_change(Workspace&, int) {}
-
-void weigh_change(Workspace&, int) {}
-
-void move_along(Workspace&, const Order&, int, base::Vec6<double>&) {}
-
-void report_along(const Workspace&, Report&) {}
-
-#else
 
 /// Until it begins its first equilibrium these are forces on it.
 void hear_change(Workspace& ws, Direction face, int change, const base::Vec6<float>& theirs) {
@@ -115,8 +99,9 @@ void move_along(Workspace& ws, const Order& order, int node, base::Vec6<double>&
   }
   base::Vec6<double> along{};
   if (is_deflated(order.operation)) {
-    for (std::size_t i = 0; i < order.along.size(); ++i) {
-      base::add_times(along, static_cast<double>(order.along[i]),
+    const Along<float> steps = order.along;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      base::add_times(along, static_cast<double>(steps[i]),
                       base::converted<double>(kept->changes[i]));
     }
     base::add_to(move, node == 0 ? along : stiff_motion(ws, along, ws.cell_of(node)));
@@ -134,16 +119,16 @@ void report_along(const Workspace& ws, Report& report) {
   }
   report.energies = kept->energies;
   const int count = ws.planned.is_any_remote() ? 1 : ws.node_count();
-  for (std::size_t j = 0; j < report.along.size(); ++j) {
+  Along<float> products{};
+  for (std::size_t j = 0; j < products.size(); ++j) {
     const auto change = base::converted<double>(kept->changes[j]);
     double product = base::dot(change, residual(ws, 0));
     for (int i = 1; i < count; ++i) {
       product += base::dot(stiff_motion(ws, change, ws.cell_of(i)), residual(ws, i));
     }
-    report.along[j] = static_cast<float>(product);
+    products[j] = static_cast<float>(product);
   }
+  report.along = products;
 }
-
-#endif
 
 }  // namespace holdfast::agent

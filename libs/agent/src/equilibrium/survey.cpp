@@ -6,9 +6,9 @@
 #include "equilibrium/beams.hpp"
 #include "equilibrium/kept_changes.hpp"
 #include "holdfast/agent/cells/feet.hpp"
+#include "holdfast/agent/features.hpp"
 #include "holdfast/mechanics/connector.hpp"
 #include "messages/resume_masks.hpp"
-#include "methods.hpp"
 #include "world/facets.hpp"
 
 namespace holdfast::agent {
@@ -74,7 +74,7 @@ Report renewal_report(const Workspace& ws, const Announcements& announcements, c
 }
 
 /// One plan more or less, the same in every module.
-[[maybe_unused]] void renew(Workspace& ws, Announcements& announcements, const Order& order) {
+void renew(Workspace& ws, Announcements& announcements, const Order& order) {
   ws.planned.forget_hosts();
   ws.exchange.enter();  // A module that has come counts exchanges from here on.
   if ((order.flags & kIsEnded) != 0) {
@@ -106,7 +106,7 @@ Report announcement_report(const Order& order, bool has_last, const Announcement
 }
 
 /// Was this module told of a step that has not been learned yet?
-[[maybe_unused]] bool is_step_told(const Workspace& ws) {
+bool is_step_told(const Workspace& ws) {
   return ws.stages() != nullptr && ws.stage() == Stage::kNone && ws.stages()->has_told();
 }
 
@@ -116,7 +116,7 @@ base::Cell touching_cell(const Workspace& ws) {
 }
 
 /// The order has come that says what was judged, or teaches a word.
-[[maybe_unused]] void take_stage_order(Workspace& ws, const Order& order) {
+void take_stage_order(Workspace& ws, const Order& order) {
   if (order.operation == Operation::kStage) {
     if (order.flags != 0) {
       ws.stages()->note(static_cast<Stage>(order.flags), order.answer);
@@ -131,7 +131,7 @@ base::Cell touching_cell(const Workspace& ws) {
 /// Where this module touches what does not move, as it knows before any node is made ready.
 void note_touching(const Workspace& ws, StageSite& site) {
   const Environment* environment = ws.environment();
-  if (!kHasSurroundings || environment == nullptr) {
+  if (!kIsGeneral || environment == nullptr) {
     site.is_standing = !site.is_fixed && site.cell.z == ws.setup.support_z;
     return;
   }
@@ -174,7 +174,7 @@ Report plan_report(const Workspace& ws, const Announcements& announcements, cons
   for (int i = 0; i < announcements.count(); ++i) {
     merge(Operation::kPlan, report, announcement_report(order, has_last, announcements, i));
   }
-  if constexpr (kJudgesStages) {
+  if constexpr (kKeepsAnswers) {
     Report planned{.flags = kFound};
     if (ws.stage() == Stage::kConnect &&
         ws.stages()->find_planned(has_last, order.cell, planned.cell)) {
@@ -188,7 +188,7 @@ Report plan_report(const Workspace& ws, const Announcements& announcements, cons
 /// Of many planned modules the root knows by itself that they are emulated.
 Report hosts_report(const Workspace& ws) {
   PlannedSet hosted;
-  const bool is_said = !kPlansMany || ws.planned.count() <= kPlannedMax;
+  const bool is_said = !kIsGeneral || ws.planned.count() <= kPlannedMax;
   for (int i = 0; is_said && i < ws.planned.hosted_count(); ++i) {
     hosted.add(ws.planned.hosted(i));
   }
@@ -215,10 +215,7 @@ Report angles_report(const Workspace& ws, const Order& order) {
 void weigh_in_stage(const Workspace& ws, int node, const base::Cell& away, Report& report) {
   const bool is_gone = node == 0 && ws.is_gone(ws.tree.cell());
   const HungMass hung = node == 0 ? ws.stages()->hung_mass(ws.tree.cell(), ws.setup) : HungMass{};
-  std::uint32_t parts = is_gone ? 0 : 2;
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
-  parts = ws.setup.has_plane && !is_gone ? 1 : parts;
-#endif
+  const std::uint32_t parts = is_gone ? 0 : ws.setup.has_plane ? 1 : 2;
   const std::array<std::int32_t, 3> place = {away.x, away.y, away.z};
   report.number = parts * report.number + static_cast<std::uint32_t>(hung.mass);
   for (std::size_t k = 0; k < report.moment.size(); ++k) {
@@ -264,19 +261,15 @@ Report loads_report(Workspace& ws) {
     own.cell = cell;
     own.direction = direction;
     own.count = mechanics::breaks(ratio) ? 1 : 0;
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
     own.remarks = remarks_on(ws, cell, direction, ratio);
-#endif
     merge(Operation::kLoads, report, own);
     if (cell == ws.tree.cell()) {
       ws.own_load_ratio = larger(ws.own_load_ratio, value);
     }
   });
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
   for (int i = 0; ws.setup.has_friction && i < ws.node_count(); ++i) {
     report.remarks |= may_slip(ws.node(i), ws.contact) ? kFacetSlips : std::uint8_t{0};
   }
-#endif
   return report;
 }
 
@@ -286,7 +279,6 @@ void prepare_node(Workspace& ws, int index) {
   Node& node = ws.node(index);
   node.is_fixed = index == 0 && ws.is_fixed;
   node.is_ground = !node.is_fixed && ws.cell_of(index).z == ws.setup.support_z;
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
   if (const Environment* environment = ws.environment(); environment != nullptr) {
     Surroundings& surroundings = ws.lent->surroundings[index];
     const bool is_kept = index == 0 && node.surroundings == &surroundings;
@@ -306,7 +298,6 @@ void prepare_node(Workspace& ws, int index) {
     node.is_ground = surroundings.facet_count > 0;
     node.surroundings = &surroundings;
   }
-#endif
   if (index == 0 && ws.stage() != Stage::kNone) {
     node.is_ground = node.is_ground && !ws.is_gone(ws.tree.cell());
     ws.stages()->hang(ws.tree.cell(), ws.setup);
@@ -319,7 +310,6 @@ base::Vec6<double> stiff_motion(const Workspace& ws, base::Vec6<double> u, const
   double x = pitch * (cell.x - own.x);
   double y = pitch * (cell.y - own.y);
   double z = pitch * (cell.z - own.z);
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
   if (!ws.setup.is_cubic()) {
     const auto from = base::node_place(ws.setup.lattice, own);
     const auto to = base::node_place(ws.setup.lattice, cell);
@@ -327,7 +317,6 @@ base::Vec6<double> stiff_motion(const Workspace& ws, base::Vec6<double> u, const
     y = pitch * (to[1] - from[1]);
     z = pitch * (to[2] - from[2]);
   }
-#endif
   u[0] += u[4] * z - u[5] * y;
   u[1] += u[5] * x - u[3] * z;
   u[2] += u[3] * y - u[4] * x;
@@ -351,9 +340,7 @@ void report_last(Workspace& ws, Report& report) {
   report.reals[1] = worst.reals[0];
   report.cell = worst.cell;
   report.direction = worst.direction;
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
   report.remarks = worst.remarks;
-#endif
   report.corners = corners_report(ws).corners;
 }
 
@@ -391,13 +378,13 @@ void begin_survey(Workspace& ws, Announcements& announcements, const Order& orde
       ws.tree.set_root_cell(order.cell);
       break;
     case Operation::kRenew:
-      if constexpr (kKeepsAnswers) {
+      if (kKeepsAnswers) {
         renew(ws, announcements, order);
       }
       break;
     case Operation::kWord:
     case Operation::kStage:
-      if constexpr (kJudgesStages) {
+      if (kKeepsAnswers) {
         take_stage_order(ws, order);
       }
       break;
@@ -425,7 +412,7 @@ Report survey_report(Workspace& ws, const Announcements& announcements, const Or
       return kKeepsAnswers ? renewal_report(ws, announcements, order) : Report{};
     case Operation::kWord:
     case Operation::kStage:
-      return kJudgesStages ? stage_report(ws, order) : Report{};
+      return kKeepsAnswers ? stage_report(ws, order) : Report{};
     case Operation::kAngles:
       return angles_report(ws, order);
     case Operation::kCorners:

@@ -4,7 +4,7 @@
 
 #include "holdfast/agent/equilibrium/deflation.hpp"
 #include "holdfast/agent/equilibrium/front.hpp"
-#include "methods.hpp"
+#include "holdfast/agent/features.hpp"
 
 namespace holdfast::agent {
 
@@ -13,25 +13,21 @@ Workspace::Workspace(const Setup& shared, const Identity& identity, const LentMe
       tree(identity.id, identity.is_anchor, identity.cell),
       lent(lent_memory),
       is_fixed(identity.is_fixed) {
-  if constexpr (kKnowsLattices) {
+  if constexpr (kIsGeneral) {
     if (lent != nullptr && lent->faces != nullptr) {
       *lent->faces = {.lattice = lent->faces->lattice};
       links.lend(lent->faces);
     }
     planned.lend(lent);
   }
-  if constexpr (kHasAllMethods) {
-    if (front_memory() != nullptr) {
-      links.lend(front_memory()->queues.data());
-    }
+  if (front_memory() != nullptr) {
+    links.lend(front_memory()->queues.data());
   }
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
   if (MorePlanned* more = planned.more_planned(); more != nullptr) {
     *more = {.group = more->group};
     links.lend_long(more->queues.data());
   }
-#endif
-  if (kKeepsAnswers && kept_changes() != nullptr) {
+  if (kept_changes() != nullptr) {
     *kept_changes() = {};
   }
 }
@@ -50,10 +46,10 @@ Faces Workspace::faces_of(int node) const {
 
 void Workspace::clear_middle() {
   middle_own = {};
-  if (MoreFaces* more = links.more(); kKnowsLattices && more != nullptr) {
+  if (MoreFaces* more = links.more(); more != nullptr) {
     more->middle = {};
   }
-  if (AcrossLoads* loads = across(); kHasSurroundings && loads != nullptr) {
+  if (AcrossLoads* loads = across(); loads != nullptr) {
     *loads = {};
   }
 }

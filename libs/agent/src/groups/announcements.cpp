@@ -17,12 +17,6 @@ bool is_legal(const base::Cell& cell) {
 
 }  // namespace
 
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-
-void Announcements::clear() { *this = Announcements(); }
-
-#else
-
 void Announcements::clear() {
   const Announcements before = *this;
   *this = Announcements();
@@ -39,8 +33,6 @@ bool operator==(const Announcements& one, const Announcements& other) {
   }
   return is_equal;
 }
-
-#endif
 
 int Announcements::find(const base::Cell& cell) const {
   for (int i = 0; i < count_; ++i) {

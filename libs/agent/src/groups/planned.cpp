@@ -10,17 +10,7 @@ namespace holdfast::agent {
 
 using base::Direction;
 
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-
-void Planned::clear() { *this = Planned(); }
-
-#else
-
-MoreFaces* Planned::more() const { return lent_ == nullptr ? nullptr : lent_->faces; }
-
-MorePlanned* Planned::more_planned() const { return lent_ == nullptr ? nullptr : lent_->planned; }
-
-Directions Planned::directions() const { return agent::directions(more()); }
+base::DirectionRange Planned::directions() const { return agent::directions(more()); }
 
 void Planned::clear() {
   const LentMemory* lent = lent_;
@@ -33,8 +23,6 @@ void Planned::clear() {
     more_planned()->below = {};
   }
 }
-
-#endif
 
 template <class T>
 T& Planned::place(ByPlanned<T>& own, ByMorePlanned<T> MorePlanned::*lent, int index) {
@@ -68,7 +56,7 @@ Faces Planned::below(Direction child, int index) const {
   if (!is_own(index)) {
     return more_planned()->below[face][at(index - kPlannedMax)];
   }
-  if (const MoreFaces* lent = more(); kKnowsLattices && lent != nullptr) {
+  if (const MoreFaces* lent = more(); lent != nullptr) {
     return lent->below[face][at(index)];
   }
   return Faces::from_mask(below_[face][at(index)].mask());
@@ -78,7 +66,7 @@ void Planned::set_below(Direction child, int index, Faces touching) {
   const auto face = static_cast<std::size_t>(child);
   if (!is_own(index)) {
     more_planned()->below[face][at(index - kPlannedMax)] = touching;
-  } else if (MoreFaces* lent = more(); kKnowsLattices && lent != nullptr) {
+  } else if (MoreFaces* lent = more(); lent != nullptr) {
     lent->below[face][at(index)] = touching;
   } else {
     below_[face][at(index)] = base::Faces::from_mask(static_cast<std::uint8_t>(touching.mask()));
@@ -91,9 +79,7 @@ void Planned::add(const base::Cell& cell, const base::Cell& self) {
   }
   forget_hosts();
   const int i = count_++;
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
   parts_here_ = 0;
-#endif
   place(cells_, &MorePlanned::cells, i) = cell;
   Faces& touching = place(own_touching_, &MorePlanned::own_touching, i);
   touching = {};
@@ -179,20 +165,18 @@ bool Planned::is_any_below(std::uint8_t group, Direction child) const {
   return false;
 }
 
-void Planned::decide_hosts(const PlannedMasks& totals, [[maybe_unused]] int part) {
+void Planned::decide_hosts(const PlannedMasks& totals, int part) {
   forget_hosts();
-  const int first = kPlansMany ? part * kMasksOfPart : 0;
+  const int first = kIsGeneral ? part * kMasksOfPart : 0;
   for (int k = first; k < count_ && k < first + kMasksOfPart; ++k) {
     place(totals_, &MorePlanned::totals, k) = Faces::from_mask(totals[at(k - first)]);
   }
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
   if (part_count() > 1) {
     parts_here_ = static_cast<std::uint8_t>(part + 1);
     if (!has_all_parts()) {
       return;
     }
   }
-#endif
   for (int k = 0; k < count_; ++k) {
     place(groups_, &MorePlanned::groups, k) = static_cast<std::uint8_t>(k);
   }
@@ -229,8 +213,8 @@ void Planned::decide_hosts(const PlannedMasks& totals, [[maybe_unused]] int part
   }
 }
 
-bool Planned::agrees_with(const PlannedMasks& totals, [[maybe_unused]] int part) const {
-  const int first = kPlansMany ? part * kMasksOfPart : 0;
+bool Planned::agrees_with(const PlannedMasks& totals, int part) const {
+  const int first = kIsGeneral ? part * kMasksOfPart : 0;
   for (int k = first; k < count_ && k < first + kMasksOfPart; ++k) {
     if (!(touching(k) - Faces::from_mask(totals[at(k - first)])).is_empty()) {
       return false;

@@ -23,12 +23,11 @@ void Exchange::start(Links& links, const base::Vec6<float>& own) {
   links.send(links.used(), vector_message(wire::MessageType::kVector, tag_, own));
 }
 
-void Exchange::take([[maybe_unused]] MoreFaces* more, Direction face,
-                    std::span<const std::uint8_t> message) {
+void Exchange::take(MoreFaces* more, Direction face, std::span<const std::uint8_t> message) {
   const auto in = decoded<LabelledVector>(message);
   const std::size_t slot = in.label & 1U;
   const auto i = static_cast<std::size_t>(face);
-  if (!kKnowsLattices || i < vectors_[slot].size()) {
+  if (!kIsGeneral || i < vectors_[slot].size()) {
     vectors_[slot][i] = in.vector;
   } else {
     more->vectors[slot][i - vectors_[slot].size()] = in.vector;

@@ -36,11 +36,9 @@ void Links::send(Faces faces, const wire::Writer& message) {
   }
 }
 
-void Links::lend([[maybe_unused]] MoreFaces* more) {
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
+void Links::lend(MoreFaces* more) {
   more_ = more;
-  more_->deadline.fill(kNever);
-#endif
+  more->deadline.fill(kNever);
 }
 
 void Links::lend(std::uint8_t* queues) {
@@ -49,13 +47,11 @@ void Links::lend(std::uint8_t* queues) {
   }
 }
 
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
 void Links::lend_long(std::uint8_t* queues) {
   for (const Direction face : directions(more())) {
     at(face).lend_long(queues + static_cast<std::ptrdiff_t>(face) * Link::kPlannedBytes);
   }
 }
-#endif
 
 bool Links::take_refusal() {
   const bool has_refused = has_refused_;

@@ -42,22 +42,21 @@ void Codec::flags(std::uint8_t& value, std::uint8_t all) {
 
 void Codec::faces(FaceMask& mask) {
   std::uint16_t wide = mask;
-  u16(wide, 0, Faces::all(face_count_).mask());
+  u16(wide, 0, Faces::all(face_count()).mask());
   mask = static_cast<FaceMask>(wide);
 }
 
 void Codec::resumed_faces(std::uint8_t& byte) {
   constexpr std::uint8_t kAll = 0xff;
-  flags(byte, face_count_ == kOwnFaceCount
+  flags(byte, face_count() == kOwnFaceCount
                   ? static_cast<std::uint8_t>(Faces::all(kOwnFaceCount).mask())
                   : kAll);
 }
 
 void Codec::direction(base::Direction& direction) {
-  kind(direction, base::Direction::kPlusX, static_cast<base::Direction>(face_count_ - 1));
+  kind(direction, base::Direction::kPlusX, static_cast<base::Direction>(face_count() - 1));
 }
 
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
 void Codec::direction(base::Direction& direction, std::uint8_t& remarks, std::uint8_t all) {
   constexpr unsigned kBits = 4;
   constexpr unsigned kDirectionBits = (1U << kBits) - 1;
@@ -66,9 +65,8 @@ void Codec::direction(base::Direction& direction, std::uint8_t& remarks, std::ui
   u8(byte);
   remarks = static_cast<std::uint8_t>(byte >> kBits);
   direction = static_cast<base::Direction>(byte & kDirectionBits);
-  require(base::index(direction) < face_count_ && (remarks & ~unsigned{all}) == 0);
+  require(base::index(direction) < face_count() && (remarks & ~unsigned{all}) == 0);
 }
-#endif
 
 void Codec::moment(std::int64_t& value) {
   auto low = static_cast<std::uint32_t>(value & 0xffffffff);

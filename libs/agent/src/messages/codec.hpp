@@ -25,11 +25,7 @@ class Codec {
   Codec(std::span<const std::uint8_t> message, std::size_t at) : in_(message, at) {}
 
   /// Reads messages of modules with so many faces; else of cubes.
-  void set_face_count([[maybe_unused]] int count) {
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
-    face_count_ = count;
-#endif
-  }
+  void set_face_count(int count) { face_count_ = count; }
 
   /// False once a field was read that no program of this version writes.
   bool is_legal() const { return is_legal_; }
@@ -44,10 +40,8 @@ class Codec {
   /// A part of the masks of planned modules in kResume (resume_masks.hpp).
   void resumed_faces(std::uint8_t& byte);
   void direction(base::Direction& direction);
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
   /// In one byte with remarks above it, no others than those of `all`.
   void direction(base::Direction& direction, std::uint8_t& remarks, std::uint8_t all);
-#endif
   /// The cell of a module, and of a plan: that, or kEveryCell.
   void cell(base::Cell& cell);
   void place(base::Cell& cell);
@@ -74,14 +68,12 @@ class Codec {
   void require(bool holds) { is_legal_ = is_legal_ && holds; }
 
  private:
+  int face_count() const { return kIsGeneral ? int{face_count_} : kOwnFaceCount; }
+
   Writer* out_ = nullptr;
   Reader in_;
   bool is_legal_ = true;
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-  static constexpr int face_count_ = kOwnFaceCount;
-#else
-  int face_count_ = kOwnFaceCount;
-#endif
+  [[no_unique_address]] PresentIf<kIsGeneral, int> face_count_ = kOwnFaceCount;
 };
 
 /// Measures a message without touching it.

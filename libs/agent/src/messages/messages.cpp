@@ -6,9 +6,9 @@
 #include "holdfast/agent/cells/occupied_cells.hpp"
 #include "holdfast/agent/cells/planned_set.hpp"
 #include "holdfast/agent/cells/step_word.hpp"
+#include "holdfast/agent/features.hpp"
 #include "holdfast/agent/messages/order.hpp"
 #include "messages/codec.hpp"
-#include "methods.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -31,7 +31,7 @@ constexpr void round_fields(auto& codec, Round& round) {
 constexpr void fields(auto& codec, Join& join) {
   round_fields(codec, join.round);
   auto number = static_cast<std::uint8_t>(join.wave + kWaves * join.stage);
-  codec.u8(number, 1, kJudgesStages ? kWaves * (1 + kStageCount) : kWaves);
+  codec.u8(number, 1, kKeepsAnswers ? kWaves * (1 + kStageCount) : kWaves);
   join.wave = static_cast<std::uint8_t>((number + kWaves - 1) % kWaves + 1);
   join.stage = static_cast<std::uint8_t>((number + kWaves - 1) / kWaves - 1);
   codec.cell(join.cell);
@@ -179,9 +179,9 @@ bool is_legal(std::span<const std::uint8_t> message, int face_count) {
       return kKeepsAnswers && is_legal_as(News{});
     case MessageType::kCellsUp:
     case MessageType::kCellsDown:
-      return kJudgesFaces && message[1] < OccupiedCells::kPartsMax;
+      return kKeepsAnswers && message[1] < OccupiedCells::kPartsMax;
     case MessageType::kReach:
-      return kJudgesFaces && is_legal_as(LabelledVector{.type = type});
+      return kKeepsAnswers && is_legal_as(LabelledVector{.type = type});
   }
   return false;
 }

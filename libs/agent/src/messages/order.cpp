@@ -6,9 +6,9 @@
 
 #include "holdfast/agent/cells/planned_set.hpp"
 #include "holdfast/agent/cells/step_word.hpp"
+#include "holdfast/agent/features.hpp"
 #include "holdfast/agent/wire/operations.hpp"
 #include "messages/codec.hpp"
-#include "methods.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -88,16 +88,20 @@ void merge_residual(Report& into, const Report& from) {
   merge_facets(into, from);
 }
 
+/// Adds up reals, if the program has them.
+template <class Reals>
+void add_each(Reals& into, const Reals& from) {
+  if constexpr (kKeepsAnswers) {
+    for (std::size_t i = 0; i < into.size(); ++i) {
+      into[i] += from[i];
+    }
+  }
+}
+
 /// Products with the changes of displacement that are kept.
-void merge_along([[maybe_unused]] Report& into, [[maybe_unused]] const Report& from) {
-#ifndef HOLDFAST_AGENT_STARTS_AFRESH
-  for (std::size_t i = 0; i < into.along.size(); ++i) {
-    into.along[i] += from.along[i];
-  }
-  for (std::size_t i = 0; i < into.energies.size(); ++i) {
-    into.energies[i] += from.energies[i];
-  }
-#endif
+void merge_along(Report& into, const Report& from) {
+  add_each(into.along, from.along);
+  add_each(into.energies, from.energies);
 }
 
 /// The box of both; supports are added up, labels modulo 2.
@@ -120,13 +124,11 @@ void merge_loads(Report& into, const Report& from) {
   const bool is_worse =
       larger(into.reals[0], from.reals[0]) != into.reals[0] && into.reals[0] == into.reals[0];
   const bool is_equal = from.reals[0] == into.reals[0];
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
   const std::uint8_t limit = into.remarks & kLimitBits;
   into.remarks = static_cast<std::uint8_t>((into.remarks | from.remarks) & ~kLimitBits);
   const bool is_theirs = is_worse || (is_equal && from.cell < into.cell);
   into.remarks |= is_theirs ? static_cast<std::uint8_t>(from.remarks & kLimitBits) : limit;
-#endif
-  if (is_worse || (is_equal && from.cell < into.cell)) {
+  if (is_theirs) {
     into.reals[0] = from.reals[0];
     into.cell = from.cell;
     into.direction = from.direction;
@@ -141,9 +143,7 @@ void merge_last(Report& into, const Report& from) {
   merge_loads(worst, worst_of(from));
   into.cell = worst.cell;
   into.direction = worst.direction;
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
   into.remarks = worst.remarks;
-#endif
   into.corners = mechanics::merge(into.corners, from.corners);
   merge_residual(into, from);
 }
@@ -173,7 +173,7 @@ void merge_word(Report& into, const Report& from) {
 }
 
 constexpr std::uint8_t kPlanReportFlags =
-    kFound | kTooManyAnnounced | kEnded | kFulfilled | kDisputed | (kJudgesStages ? kStepTold : 0);
+    kFound | kTooManyAnnounced | kEnded | kFulfilled | kDisputed | (kKeepsAnswers ? kStepTold : 0);
 
 /// A mask of which messages hold one byte.
 [[gnu::always_inline]] constexpr void byte_flags(auto& codec, FaceMask& mask, unsigned all) {
@@ -217,11 +217,11 @@ constexpr void corner_fields(auto& codec, mechanics::SupportCorners& corners) {
 template <class Fields>
 constexpr void connection_fields(auto& codec, base::Direction& direction,
                                  [[maybe_unused]] Fields& of, [[maybe_unused]] std::uint8_t all) {
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-  codec.direction(direction);
-#else
-  codec.direction(direction, of.remarks, all);
-#endif
+  if constexpr (kIsGeneral) {
+    codec.direction(direction, of.remarks, all);
+  } else {
+    codec.direction(direction);
+  }
 }
 
 constexpr void answer_fields(auto& codec, Answer& answer) {
@@ -270,11 +270,11 @@ constexpr void iterate_fields(auto& codec, Order& order, std::uint8_t flags) {
 }
 
 /// An iteration with the least energy, and how far to go along what is kept.
-constexpr void deflated_fields([[maybe_unused]] auto& codec, [[maybe_unused]] Order& order) {
-#ifndef HOLDFAST_AGENT_STARTS_AFRESH
-  iterate_fields(codec, order, kRestart | kLeastResidual | kKeepStates | kHoldPlanned);
-  real_fields(codec, order.along);
-#endif
+constexpr void deflated_fields(auto& codec, Order& order) {
+  if constexpr (kKeepsAnswers) {
+    iterate_fields(codec, order, kRestart | kLeastResidual | kKeepStates | kHoldPlanned);
+    real_fields(codec, order.along);
+  }
 }
 
 constexpr void word_fields(auto& codec, Order& order) {
@@ -299,8 +299,8 @@ constexpr void step_fields(auto& codec, Order& order) {
 
 /// Of kShape and kNext, which some programs do not know.
 constexpr void face_fields(auto& codec, Order& order) {
-  codec.require(kJudgesFaces);
-  if (!kJudgesFaces || order.operation == Operation::kShape) {
+  codec.require(kKeepsAnswers);
+  if (!kKeepsAnswers || order.operation == Operation::kShape) {
     return;
   }
   codec.flags(order.flags, kIsHeld | kHasForces | kIsUnilateral);
@@ -316,9 +316,9 @@ constexpr void face_fields(auto& codec, Order& order) {
 constexpr void mask_fields(auto& codec, Order& order) {
   constexpr std::size_t kMasks = 8;
   for (std::size_t k = 0; k < kMasks; ++k) {
-    FaceMask none = kPlansMany && k + 1 == kMasks ? order.index : FaceMask{0};
+    FaceMask none = kIsGeneral && k + 1 == kMasks ? order.index : FaceMask{0};
     codec.faces(k < order.masks.size() ? order.masks[k] : none);
-    if (kPlansMany && k + 1 == kMasks) {
+    if (kIsGeneral && k + 1 == kMasks) {
       order.index = static_cast<std::uint8_t>(none);
       codec.require(none < (kPlannedMost + kMasksOfPart - 1) / kMasksOfPart);
     }
@@ -326,7 +326,7 @@ constexpr void mask_fields(auto& codec, Order& order) {
 }
 
 constexpr void seek_fields(auto& codec, Order& order) {
-  codec.flags(order.flags, kRemember | (kHasSurroundings ? kOneFoot : 0));
+  codec.flags(order.flags, kRemember | (kIsGeneral ? kOneFoot : 0));
   codec.i32(order.mass);
 }
 
@@ -377,14 +377,14 @@ constexpr void fields(auto& codec, Order& order) {
       return kKeepsAnswers ? resume_fields(codec, order) : void();
     case Operation::kWord:
     case Operation::kStage:
-      codec.require(kJudgesStages);
-      return kJudgesStages ? step_fields(codec, order) : void();
+      codec.require(kKeepsAnswers);
+      return kKeepsAnswers ? step_fields(codec, order) : void();
     case Operation::kShape:
     case Operation::kNext:
       return face_fields(codec, order);
     case Operation::kSeek:
-      codec.require(kSeeksOthers);
-      return kSeeksOthers ? seek_fields(codec, order) : void();
+      codec.require(kHasAllMethods);
+      return kHasAllMethods ? seek_fields(codec, order) : void();
     case Operation::kCorners:
     case Operation::kLoads:
     case Operation::kFactor:
@@ -397,7 +397,7 @@ constexpr void fields(auto& codec, Order& order) {
 constexpr std::uint8_t kHostedFlags = (1U << kPlannedMax) - 1 + kAnyRemote;
 constexpr std::uint8_t kRenewalFlags =
     kAnyFixed | kSumOverflow | kManyLoops | kMoreAnnounced | kAtOdds | kNewLoop;
-constexpr std::uint8_t kFacetFlags = kAnyTilting | kMayPull | (kSeeksOthers ? kMayDiffer : 0);
+constexpr std::uint8_t kFacetFlags = kAnyTilting | kMayPull | (kHasAllMethods ? kMayDiffer : 0);
 constexpr std::uint8_t kFrontFlags = kHasAllMethods ? kNoRoom | kNoState : 0;
 
 /// Bound on the error, largest load ratio; facets that change, the hash of all states, any tilting.
@@ -415,17 +415,17 @@ constexpr void worst_fields(auto& codec, Report& report) {
   connection_fields(codec, report.direction, report, kLimitBits | kGapOpens | kFacetSlips);
 }
 
-constexpr void along_fields([[maybe_unused]] auto& codec, [[maybe_unused]] Report& report) {
-#ifndef HOLDFAST_AGENT_STARTS_AFRESH
-  real_fields(codec, report.along);
-#endif
+constexpr void along_fields(auto& codec, Report& report) {
+  if constexpr (kKeepsAnswers) {
+    real_fields(codec, report.along);
+  }
 }
 
-constexpr void energy_fields([[maybe_unused]] auto& codec, [[maybe_unused]] Report& report) {
-#ifndef HOLDFAST_AGENT_STARTS_AFRESH
-  along_fields(codec, report);
-  real_fields(codec, report.energies);
-#endif
+constexpr void energy_fields(auto& codec, Report& report) {
+  if constexpr (kKeepsAnswers) {
+    real_fields(codec, report.along);
+    real_fields(codec, report.energies);
+  }
 }
 
 constexpr void resumption_fields(auto& codec, Report& report) {
@@ -537,7 +537,7 @@ constexpr void fields(auto& codec, Operation operation, Report& report) {
       codec.u32(report.count);
       return codec.u32(report.number);
     case Operation::kShape:
-      return kJudgesFaces ? shape_fields(codec, report) : void();
+      return kKeepsAnswers ? shape_fields(codec, report) : void();
     case Operation::kCorners:
       return corner_fields(codec, report.corners);
     case Operation::kClose:
@@ -549,7 +549,7 @@ constexpr void fields(auto& codec, Operation operation, Report& report) {
     case Operation::kVerdict:
       return codec.u32(report.count);
     case Operation::kWord:
-      return kJudgesStages ? word_report_fields(codec, report) : void();
+      return kKeepsAnswers ? word_report_fields(codec, report) : void();
     case Operation::kStage:
       codec.flags(report.flags, kNewLinks);
       return codec.u32(report.count);
@@ -569,7 +569,7 @@ static_assert([] {
     Report report;
     fields(up, row.operation, report);
     const bool is_known = (kKeepsAnswers || row.operation < Operation::kRenew) &&
-                          (kSeeksOthers || row.operation != Operation::kSeek);
+                          (kHasAllMethods || row.operation != Operation::kSeek);
     if (is_known && (down.bytes() != row.order_bytes || up.bytes() != row.report_bytes)) {
       return false;
     }
@@ -652,14 +652,14 @@ void merge(Operation operation, Report& into, const Report& from) {
     case Operation::kLoads:
       return merge_loads(into, from);
     case Operation::kWord:
-      return kJudgesStages ? merge_word(into, from) : void();
+      return kKeepsAnswers ? merge_word(into, from) : void();
     case Operation::kStage:
       into.flags = static_cast<std::uint8_t>(into.flags | from.flags);
       break;
     case Operation::kShape:
-      return kJudgesFaces ? merge_shape(into, from) : void();
+      return kKeepsAnswers ? merge_shape(into, from) : void();
     case Operation::kSeek:
-      return kSeeksOthers ? merge_keys(into, from) : void();
+      return kHasAllMethods ? merge_keys(into, from) : void();
     default:
       break;
   }

@@ -93,7 +93,7 @@ bool Condensing::do_piece(Workspace& ws, const Order& order, std::span<Iteration
   if (number == 0) {
     start(ws);
   }
-  const bool is_many = kPlansMany && is_group(ws);
+  const bool is_many = kIsGeneral && is_group(ws);
   const Leaves leaves = is_many ? Leaves() : group_trees(ws.planned);
   const int last = ws.planned.hosted_count() - 1;
   switch (piece_) {
@@ -129,7 +129,7 @@ bool Condensing::do_piece(Workspace& ws, const Order& order, std::span<Iteration
       return true;
     }
     case Piece::kGroup:
-      kPlansMany ? shift_group(ws) : void();
+      kIsGeneral ? shift_group(ws) : void();
       return true;
     case Piece::kLoads:
       hand_load_on(ws, leaves, memory);

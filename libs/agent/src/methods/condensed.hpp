@@ -3,8 +3,8 @@
 #pragma once
 
 #include "holdfast/agent/equilibrium/workspace.hpp"
+#include "holdfast/agent/features.hpp"
 #include "holdfast/agent/messages/order.hpp"
-#include "methods.hpp"
 
 /// Planned modules that touch several others.
 ///

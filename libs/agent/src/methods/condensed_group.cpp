@@ -4,16 +4,6 @@
 
 namespace holdfast::agent {
 
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-
-bool is_group(const Workspace& /*ws*/) { return false; }
-
-void factor_group(Workspace& /*ws*/) {}
-
-void solve_group(Workspace& /*ws*/) {}
-
-#else
-
 namespace {
 
 constexpr std::size_t kUnknowns = 6;
@@ -97,7 +87,7 @@ bool is_group(const Workspace& ws) {
 }
 
 void factor_group(Workspace& ws) {
-  if (is_made(ws)) {
+  if (!is_group(ws) || is_made(ws)) {
     return;
   }
   const Matrix matrix(ws);
@@ -110,6 +100,9 @@ void factor_group(Workspace& ws) {
 }
 
 void solve_group(Workspace& ws) {
+  if (!is_group(ws)) {
+    return;
+  }
   const Matrix matrix(ws);
   const auto value = [&ws](std::size_t row) -> double& {
     return ws.node(1 + static_cast<int>(row / kUnknowns)).force[row % kUnknowns];
@@ -126,7 +119,5 @@ void solve_group(Workspace& ws) {
     value(row) /= matrix.at(row, row);
   }
 }
-
-#endif
 
 }  // namespace holdfast::agent

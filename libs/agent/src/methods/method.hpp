@@ -9,7 +9,7 @@
 #include "holdfast/agent/methods/sweep.hpp"
 
 /// The methods that find an equilibrium, as the sweeps see them: the same few functions of each.
-/// Which of them a program has methods.hpp says.
+/// Which of them a program has features.hpp says.
 namespace holdfast::agent {
 
 /// A message's bytes, its type first.

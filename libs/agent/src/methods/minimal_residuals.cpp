@@ -7,7 +7,7 @@
 #include "equilibrium/kept_changes.hpp"
 #include "equilibrium/stage_load.hpp"
 #include "equilibrium/survey.hpp"
-#include "methods.hpp"
+#include "holdfast/agent/features.hpp"
 #include "methods/condensed.hpp"
 #include "world/facets.hpp"
 
@@ -98,7 +98,7 @@ void MinimalResiduals::renew_diagonal(int index, int part) {
 
 bool MinimalResiduals::hold(int piece, Report& report) {
   if (piece == 0) {
-    if (kSeeksOthers && order_.operation == wire::Operation::kSeek) {
+    if (kHasAllMethods && order_.operation == wire::Operation::kSeek) {
       seek_facets(ws_, order_, report);
     } else {
       hold_facets(ws_, order_, report);

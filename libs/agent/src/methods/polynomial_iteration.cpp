@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/methods/polynomial_iteration.hpp"
 
-#include "methods.hpp"
+#include "holdfast/agent/features.hpp"
 #include "methods/minimal_residuals.hpp"
 
 namespace holdfast::agent {
@@ -12,7 +12,7 @@ namespace {
 /// Another state of facets, and nothing moves.
 bool is_about_facets(const Order& order) {
   return order.operation == wire::Operation::kHold ||
-         (kSeeksOthers && order.operation == wire::Operation::kSeek);
+         (kHasAllMethods && order.operation == wire::Operation::kSeek);
 }
 
 }  // namespace

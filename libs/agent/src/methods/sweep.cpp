@@ -4,12 +4,12 @@
 
 #include "equilibrium/survey.hpp"
 #include "holdfast/agent/cells/feet.hpp"
+#include "holdfast/agent/features.hpp"
 #include "holdfast/agent/free_faces/free_faces.hpp"
 #include "holdfast/agent/messages/messages.hpp"
 #include "holdfast/agent/wire/operations.hpp"
 #include "holdfast/mechanics/connector.hpp"
 #include "messages/resume_masks.hpp"
-#include "methods.hpp"
 #include "methods/condensed.hpp"
 #include "methods/method.hpp"
 
@@ -37,7 +37,7 @@ bool condenses(const Workspace& ws, const Order& order) {
 bool has_fronts(const Order& begin) { return kHasAllMethods && (begin.flags & kWithFronts) != 0; }
 
 /// Constant in a program that does not judge free faces.
-bool judges_faces(const Workspace& ws) { return kJudgesFaces && ws.free_faces() != nullptr; }
+bool judges_faces(const Workspace& ws) { return ws.free_faces() != nullptr; }
 
 /// Where an order leads; what it must not lead to has been refused before.
 Course course_after(const Order& order, Course course) {
@@ -96,10 +96,10 @@ void Sweep::adopt(Workspace& ws) {
 
 void Sweep::make_method(Workspace& ws) {
   method()->make(state_);
-  if (MoreFaces* more = ws.links.more(); kKnowsLattices && more != nullptr) {
+  if (MoreFaces* more = ws.links.more(); more != nullptr) {
     more->child_cut_count = {};
   }
-  if (MorePlanned* more = ws.planned.more_planned(); kPlansMany && more != nullptr) {
+  if (MorePlanned* more = ws.planned.more_planned(); more != nullptr) {
     more->clear_methods();
   }
 }
@@ -126,7 +126,7 @@ bool Sweep::is_in_course(const Workspace& ws, const Order& order) const {
   switch (order.operation) {
     case Operation::kPlan:
       return order.index == kNoPlanned
-                 ? course_ == Course::kWaves || (kJudgesStages && course_ == Course::kStaged)
+                 ? course_ == Course::kWaves || (kKeepsAnswers && course_ == Course::kStaged)
                  : course_ == Course::kPlanned && order.index == ws.planned.count();
     case Operation::kForget:
       return course_ == Course::kPlanned;
@@ -141,7 +141,7 @@ bool Sweep::is_in_course(const Workspace& ws, const Order& order) const {
       return is_good_hosts(ws, order);
     case Operation::kMass:
       return (course_ == Course::kHosted && ws.planned.has_all_parts()) ||
-             (kJudgesStages && course_ == Course::kStaged);
+             (kKeepsAnswers && course_ == Course::kStaged);
     case Operation::kAngles:
       return course_ == Course::kWeighed && fits_exact_check(ws.setup, order.mass) &&
              mass_report(ws).extent <= kExtentMax;
@@ -175,7 +175,7 @@ bool Sweep::is_in_course(const Workspace& ws, const Order& order) const {
       return course_ == Course::kClusters ||
              (course_ == Course::kPolynomial && (order.flags & kWithClusters) == 0);
     case Operation::kSeek:
-      return kSeeksOthers && is_good_seek(ws, order);
+      return kHasAllMethods && is_good_seek(ws, order);
     default:
       return order.operation == Operation::kHold &&
              (course_ == Course::kPolynomial || makes_fronts(course_));
@@ -184,13 +184,9 @@ bool Sweep::is_in_course(const Workspace& ws, const Order& order) const {
 
 /// Whether these can be the faces that touch planned modules, or the next part of them.
 bool Sweep::is_good_hosts(const Workspace& ws, const Order& order) const {
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
-  if (order.index != ws.planned.parts_here()) {
-    return false;
-  }
-#endif
+  const bool is_next = !kIsGeneral || order.index == ws.planned.parts_here();
   const bool is_first = course_ == Course::kPlanned;
-  return (is_first || (course_ == Course::kHosted && !ws.planned.has_all_parts())) &&
+  return is_next && (is_first || (course_ == Course::kHosted && !ws.planned.has_all_parts())) &&
          ws.planned.agrees_with(order.masks, order.index);
 }
 
@@ -198,7 +194,7 @@ bool Sweep::is_good_hosts(const Workspace& ws, const Order& order) const {
 /// said again, as the robot's shape is the same or a module has come, and that on all stages of a
 /// step together, which this module knows, too; and no robot is safe whose connection here breaks.
 bool Sweep::is_good_answer(const Workspace& ws, const Answer& answer) const {
-  const bool is_overall = kJudgesStages && course_ == Course::kStaged && ws.stages() != nullptr &&
+  const bool is_overall = kKeepsAnswers && course_ == Course::kStaged && ws.stages() != nullptr &&
                           answer == ws.stages()->overall();
   if (is_overall) {
     return true;
@@ -309,23 +305,24 @@ void Sweep::take_order(Workspace& ws, Announcements& announcements, const Order&
   } else if (is_resume(order.operation)) {
     resume_survey(ws, announcements, order);
   }
-  if (judges_faces(ws)) {
-    begin_faces(ws, order);
-  }
+  begin_faces(ws, order);
   begin_method(ws, order);
 }
 
 /// What is known of free faces begins, ends, or is added to by the verdict on a single plan.
 void Sweep::begin_faces(Workspace& ws, const Order& order) {
-  FreeFaces& faces = *ws.free_faces();
+  FreeFaces* faces = ws.free_faces();
+  if (faces == nullptr) {
+    return;
+  }
   const bool is_grown =
       order.operation == Operation::kRenew && (order.flags & (kIsGrown | kIsFulfilled)) != 0;
   if (order.operation == Operation::kShape || is_grown) {
-    faces.forget();
+    faces->forget();
   } else if (order.operation == Operation::kNext) {
-    faces.begin_next(ws, order);
+    faces->begin_next(ws, order);
   } else if (order.operation == Operation::kVerdict && ws.planned.count() == 1) {
-    faces.note(ws.planned.own_face(0), order.answer);
+    faces->note(ws.planned.own_face(0), order.answer);
   }
 }
 
@@ -407,7 +404,7 @@ void Sweep::take(Workspace& ws, Direction face, Message message) {
     case MessageType::kCellsUp:
     case MessageType::kCellsDown:
     case MessageType::kReach:
-      return kJudgesFaces ? ws.free_faces()->take(ws, face, message) : void();
+      return kKeepsAnswers ? ws.free_faces()->take(ws, face, message) : void();
     default:
       return method()->take(state_, ws, order_, face, message);
   }
@@ -488,11 +485,11 @@ bool Sweep::report(Workspace& ws, const Announcements& announcements) {
     sum_ = resume_report(ws, order_);
     return false;
   }
-  if (kJudgesFaces && operation == Operation::kShape) {
+  if (kKeepsAnswers && operation == Operation::kShape) {
     sum_ = ws.free_faces()->shape_report(ws);
     return false;
   }
-  if (kJudgesFaces && operation == Operation::kNext) {
+  if (kKeepsAnswers && operation == Operation::kNext) {
     sum_ = ws.free_faces()->next_report();
     return false;
   }
@@ -521,11 +518,11 @@ void Sweep::add_up(Workspace& ws) {
     if (order_.operation == Operation::kRenew && is_new_plan(order_)) {
       ws.planned.add_below(face, ws.planned.count() - 1, Faces::from_mask(theirs.mask));
     }
-    if (kJudgesFaces && order_.operation == Operation::kShape) {
+    if (kKeepsAnswers && order_.operation == Operation::kShape) {
       ws.free_faces()->take_shape(face, theirs);
     }
   }
-  if (kJudgesFaces && order_.operation == Operation::kShape) {
+  if (kKeepsAnswers && order_.operation == Operation::kShape) {
     ws.free_faces()->take_shape_here(sum_);
   }
   if (!ws.tree.is_root()) {

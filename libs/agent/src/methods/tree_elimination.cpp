@@ -6,8 +6,8 @@
 #include "equilibrium/displacements.hpp"
 #include "equilibrium/stage_load.hpp"
 #include "groups/leaves.hpp"
+#include "holdfast/agent/features.hpp"
 #include "holdfast/agent/messages/messages.hpp"
-#include "methods.hpp"
 #include "world/facets.hpp"
 
 namespace holdfast::agent {
@@ -141,7 +141,7 @@ bool TreeElimination::take_exchange(Workspace& ws, const Order& /*order*/, int /
 }
 
 bool TreeElimination::report(Workspace& ws, const Order& order, int piece, Report& sum) {
-  if (kSeeksOthers && order.operation == Operation::kSeek) {
+  if (kHasAllMethods && order.operation == Operation::kSeek) {
     seek_facets(ws, order, sum);
     return false;
   }
@@ -221,9 +221,9 @@ void TreeElimination::take_loop(Workspace& ws, Direction face,
 
 // ---- Stiffness.
 
-void TreeElimination::clear_stiffness_above([[maybe_unused]] const Workspace& ws) {
+void TreeElimination::clear_stiffness_above(const Workspace& ws) {
   stiffness_above_ = {};
-  if (MorePlanned* more = ws.planned.more_planned(); kPlansMany && more != nullptr) {
+  if (MorePlanned* more = ws.planned.more_planned(); more != nullptr) {
     more->stiffness_above = {};
   }
 }

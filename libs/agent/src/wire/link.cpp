@@ -5,9 +5,8 @@
 #include <bit>
 #include <cstring>
 
-#include "holdfast/agent/cells/lattices.hpp"
+#include "holdfast/agent/features.hpp"
 #include "holdfast/base/check.hpp"
-#include "methods.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -37,7 +36,7 @@ std::uint16_t session(std::uint16_t sender, std::uint16_t receiver) {
 
 /// What the modules are, as greetings say it.
 std::uint8_t lattice_of(const LinkTiming& timing) {
-  return kKnowsLattices ? timing.lattice : wire::kCubicLattice;
+  return kIsGeneral ? timing.lattice : wire::kCubicLattice;
 }
 
 int finish(std::span<std::uint8_t> packet, int size, std::uint16_t start) {
@@ -88,13 +87,11 @@ std::uint8_t& Link::chunk_bytes(int index) {
 void Link::clear() {
   std::uint8_t* const lent = lent_;
   const base::Direction face = face_;
-  [[maybe_unused]] const bool was_long = is_long();
+  const bool was_long = is_long();
   *this = Link();
   lent_ = lent;
   face_ = face;
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
   is_long_ = was_long;
-#endif
 }
 
 std::uint16_t Link::wrapped(int position) const {

@@ -28,7 +28,7 @@ constexpr ChecksumTables checksum_tables() {
   return tables;
 }
 
-[[maybe_unused]] constexpr ChecksumTables kChecksumTables = checksum_tables();
+constexpr ChecksumTables kChecksumTables = checksum_tables();
 
 /// Sizes by type, without orders and reports.
 constexpr std::array<std::uint8_t, 21> kMessageBytes = {0,  19, 19, 8,  12, 0,  0,  26, 26, 26, 11,
@@ -46,23 +46,8 @@ constexpr auto room_for(std::uint8_t OperationInfo::*bytes) {
 constexpr auto kOrderBytes = room_for(&OperationInfo::order_bytes);
 constexpr auto kReportBytes = room_for(&OperationInfo::report_bytes);
 
-}  // namespace
-
-int message_bytes(std::uint8_t type, std::uint8_t second) {
-  if (type >= kMessageBytes.size()) {
-    return 0;
-  }
-  const bool is_order = type == static_cast<std::uint8_t>(MessageType::kOrder);
-  const bool is_report = type == static_cast<std::uint8_t>(MessageType::kReport);
-  if (!is_order && !is_report) {
-    return kMessageBytes[type];
-  }
-  return second > kOperationLast ? 0 : (is_order ? kOrderBytes : kReportBytes)[second];
-}
-
-#ifdef HOLDFAST_AGENT_SMALL_CHECKSUM
 /// The checksum with a table of 32 bytes instead of 2,048: four bits at a time.
-std::uint16_t checksum(std::span<const std::uint8_t> bytes, std::uint16_t start) {
+std::uint16_t small_checksum(std::span<const std::uint8_t> bytes, std::uint16_t start) {
   static constexpr std::array<std::uint16_t, 16> kTable = [] {
     std::array<std::uint16_t, 16> table{};
     for (std::size_t i = 0; i < table.size(); ++i) {
@@ -77,8 +62,8 @@ std::uint16_t checksum(std::span<const std::uint8_t> bytes, std::uint16_t start)
   }
   return static_cast<std::uint16_t>(value);
 }
-#else
-std::uint16_t checksum(std::span<const std::uint8_t> bytes, std::uint16_t start) {
+
+std::uint16_t fast_checksum(std::span<const std::uint8_t> bytes, std::uint16_t start) {
   const auto& [last, third, second, first] = kChecksumTables;
   std::uint32_t value = start;
   for (; bytes.size() >= 4; bytes = bytes.subspan(4)) {
@@ -90,7 +75,24 @@ std::uint16_t checksum(std::span<const std::uint8_t> bytes, std::uint16_t start)
   }
   return static_cast<std::uint16_t>(value);
 }
-#endif
+
+}  // namespace
+
+int message_bytes(std::uint8_t type, std::uint8_t second) {
+  if (type >= kMessageBytes.size()) {
+    return 0;
+  }
+  const bool is_order = type == static_cast<std::uint8_t>(MessageType::kOrder);
+  const bool is_report = type == static_cast<std::uint8_t>(MessageType::kReport);
+  if (!is_order && !is_report) {
+    return kMessageBytes[type];
+  }
+  return second > kOperationLast ? 0 : (is_order ? kOrderBytes : kReportBytes)[second];
+}
+
+std::uint16_t checksum(std::span<const std::uint8_t> bytes, std::uint16_t start) {
+  return kHasFastChecksum ? fast_checksum(bytes, start) : small_checksum(bytes, start);
+}
 
 void Writer::u8(std::uint8_t value) {
   HOLDFAST_CHECK(size_ < bytes_.size());

@@ -14,12 +14,8 @@ namespace holdfast::agent {
 /// The surroundings of a node, or null: it can touch a floor only. `Foot`, here and below: a Node,
 /// or a KeptNode of a root with fronts. (Small images need the hint `inline`.)
 template <class Foot>
-inline Surroundings* surroundings_of([[maybe_unused]] const Foot& node) {
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-  return nullptr;
-#else
+inline Surroundings* surroundings_of(const Foot& node) {
   return node.surroundings;
-#endif
 }
 
 /// A facet that presses with less than this share of what else acts on it does not press: what is

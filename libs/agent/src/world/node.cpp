@@ -36,10 +36,7 @@ void prepare(Setup& setup) {
       .moment_y = static_cast<float>(section.moment_y),
       .torsion = static_cast<float>(section.torsion)};
   setup.beam_float = mechanics::beam_stiffness(single);
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
-  setup.lattice_beam = {section, setup.lattice};
-  setup.lattice_beam_float = {single, setup.lattice};
-#endif
+  setup.prepare(section, single);
 }
 
 void reset(Node& node) {
@@ -152,11 +149,9 @@ double ratio_error(const Vec6<double>& residual, const Setup& setup,
     force += absolute(static_cast<double>(residual[i]));
     torque += absolute(static_cast<double>(residual[i + 3]));
   }
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
   if (setup.ratio_per_n > 0) {
     return setup.ratio_per_n * force + setup.ratio_per_nmm * (torque + force * contact.lever_mm);
   }
-#endif
   const double strength = setup.strength_vertical_n < setup.strength_lateral_n
                               ? setup.strength_vertical_n
                               : setup.strength_lateral_n;

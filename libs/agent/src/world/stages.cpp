@@ -200,10 +200,8 @@ void Stages::note(Stage stage, const Answer& answer) {
   }
   const bool has_ratio = answer.verdict == Verdict::kSafe || answer.verdict == Verdict::kOverload;
   const bool is_worse = has_ratio && answer.load_ratio_max > worst.load_ratio_max;
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
   const int limit = (is_worse ? answer : worst).remarks & kLimitBits;
   worst.remarks = static_cast<std::uint8_t>(limit | ((worst.remarks | answer.remarks) & kGapOpens));
-#endif
   if (is_worse) {
     worst.worst_cell = answer.worst_cell;
     worst.worst_direction = answer.worst_direction;
@@ -411,7 +409,7 @@ bool Stages::carries(std::uint8_t group, const Cell& cell, int& waypoint) const 
 
 /// What a module weighs, in units.
 std::int32_t Stages::mass_of(const Cell& cell) const {
-  if (!kHasSurroundings || environment_ == nullptr) {
+  if (environment_ == nullptr) {
     return 1;
   }
   Surroundings there{.environment = environment_};
@@ -421,7 +419,7 @@ std::int32_t Stages::mass_of(const Cell& cell) const {
 
 /// What acts on a module from outside.
 base::Vec6<double> Stages::load_of(const Cell& cell, const Setup& setup) const {
-  if (!kHasSurroundings || environment_ == nullptr) {
+  if (environment_ == nullptr) {
     return {0, 0, -setup.weight_n};
   }
   Surroundings there{.environment = environment_};
@@ -444,13 +442,11 @@ Stages::Place Stages::place_from(const StepWord& move, int waypoint, const Cell&
   return {doubled[0] / 2, doubled[1] / 2, doubled[2] / 2};
 }
 
-HungMass Stages::hung_mass(const Cell& cell, [[maybe_unused]] const Setup& setup) const {
+HungMass Stages::hung_mass(const Cell& cell, const Setup& setup) const {
   HungMass sum;
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
   if (setup.has_plane) {
     return hung_on_plane(cell, setup);
   }
-#endif
   for (std::uint8_t group = 0; group < kGroupCount; ++group) {
     int waypoint = 0;
     if (!carries(group, cell, waypoint)) {
@@ -504,7 +500,6 @@ base::Vec6<double> Stages::hung_load(const Cell& cell, const Setup& setup) const
   return sum;
 }
 
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
 /// Its pressure on the plane of supports, and its moments about the foot of the module there, as
 /// the module's own load is counted: rounded once more, in the place of a module that is gone.
 HungMass Stages::hung_on_plane(const Cell& cell, const Setup& setup) const {
@@ -526,7 +521,6 @@ HungMass Stages::hung_on_plane(const Cell& cell, const Setup& setup) const {
           .moment = {rounded((height * dot(x, force) + dot(y, torque)) / moment_unit),
                      rounded((height * dot(y, force) - dot(x, torque)) / moment_unit), 0}};
 }
-#endif
 
 /// A module that is gone has no load: of one with surroundings they know it, on another one its
 /// weight is taken off.
@@ -548,13 +542,11 @@ mechanics::LimitRatio Stages::ratio_through(Direction face, const StepWord& held
   const base::Vec6<double> middle = {dot(force, frame[0]),  dot(force, frame[1]),
                                      dot(force, along),     dot(torque, frame[0]),
                                      dot(torque, frame[1]), dot(torque, frame[2])};
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
   if (environment_ != nullptr && environment_->law != nullptr) {
     const mechanics::ConnectorLaw& law =
         environment_->law(environment_->map, cell, face, held.cell);
     return mechanics::load_ratio(law, mechanics::connection_force(law, middle, length));
   }
-#endif
   return {.ratio = mechanics::load_ratio(mechanics::connection_load(middle), setup.facet_mm,
                                          strength_n(setup, face))};
 }

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "holdfast/agent/features.hpp"
 #include "holdfast/base/algebra.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/mechanics/beam.hpp"
@@ -13,32 +14,7 @@
 /// cubes; programs that know cubes alone have those.
 namespace holdfast::agent {
 
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-
-template <class Real>
-using Beams = const mechanics::BeamStiffness<Real>&;
-
-inline const mechanics::BeamStiffness<double>& stiffness_of(Beams<double> beams) { return beams; }
-
-/// The way from the neighbour in a direction to here, `pitch` long.
-inline std::array<double, 3> lever_across(Beams<double>, base::Direction direction, double pitch) {
-  const base::Cell way = base::neighbour({0, 0, 0}, direction);
-  return {-pitch * way.x, -pitch * way.y, -pitch * way.z};
-}
-
-template <class Real>
-base::Vec6<Real> to_local(Beams<Real>, base::Direction direction, const base::Vec6<Real>& global) {
-  return mechanics::to_local(direction, global);
-}
-
-template <class Real>
-base::Vec6<Real> to_global(Beams<Real>, base::Direction direction, const base::Vec6<Real>& local) {
-  return mechanics::to_global(direction, local);
-}
-
-#else
-
-/// Two references: handed on by value.
+/// One reference, or two: handed on by value.
 template <class Real>
 struct Beams {
   // A cube's beams are known by their stiffness alone. NOLINTNEXTLINE(google-explicit-constructor)
@@ -47,7 +23,8 @@ struct Beams {
       : stiffness(beam), lattice(others) {}
 
   const mechanics::BeamStiffness<Real>& stiffness;
-  const mechanics::LatticeBeam<Real>* lattice;  ///< Null: of cubes.
+  /// Null: of cubes.
+  [[no_unique_address]] PresentIf<kIsGeneral, const mechanics::LatticeBeam<Real>*> lattice;
 };
 
 inline const mechanics::BeamStiffness<double>& stiffness_of(const Beams<double>& beams) {
@@ -105,7 +82,5 @@ base::Mat6<Real> block_12(const Beams<Real>& beams, base::Direction direction) {
   return beams.lattice == nullptr ? mechanics::block_12(beams.stiffness, direction)
                                   : beams.lattice->block_12(direction);
 }
-
-#endif
 
 }  // namespace holdfast::agent

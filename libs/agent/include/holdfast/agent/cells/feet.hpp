@@ -40,11 +40,7 @@ inline constexpr std::int32_t kFacetPartMax = std::int32_t{1} << 20;
 
 /// Lengths on the floor: whole numbers and, where rows are sqrt(3)/2 of a pitch apart, what that
 /// makes of them.
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-using FloorLength = std::int64_t;
-#else
-using FloorLength = mechanics::RootThree;
-#endif
+using FloorLength = std::conditional_t<kIsGeneral, mechanics::RootThree, std::int64_t>;
 
 /// A corner of a foot from the root's centre, in quarters of a cell: 4 x - 1 and 4 x + 1 are the
 /// sides of cell x, however wide the facet is.
@@ -99,15 +95,18 @@ class FeetCheck {
   Vector seen(const FootCorner& corner) const;
   Angles angles_of(const SafeCorners& corners) const;
 
+  FloorLength pitch_y() const {
+    if constexpr (kIsGeneral) {
+      return pitch_y_;
+    } else {
+      return pitch_;
+    }
+  }
+
   std::int64_t pitch_;      ///< Pitch of cells: its parts times the modules.
   FloorLength half_width_;  ///< Half the width of a facet.
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-  std::int64_t pitch_y() const { return pitch_; }
-#else
-  FloorLength pitch_y() const { return pitch_y_; }
-
-  FloorLength pitch_y_;
-#endif
+  /// The same from row to row.
+  [[no_unique_address]] PresentIf<kIsGeneral, FloorLength> pitch_y_;
   Vector mass_;
 };
 

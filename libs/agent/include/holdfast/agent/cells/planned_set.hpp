@@ -15,9 +15,8 @@ namespace holdfast::agent {
 /// Planned modules that every module has room for itself.
 inline constexpr int kPlannedMax = 5;
 
-/// Can modules be lent memory for more (more_planned.hpp)? For so many then.
-inline constexpr bool kPlansMany = kKnowsLattices;
-inline constexpr int kPlannedMost = kPlansMany ? 30 : kPlannedMax;
+/// Modules can be lent memory for so many (more_planned.hpp).
+inline constexpr int kPlannedMost = kIsGeneral ? 30 : kPlannedMax;
 
 /// Planned modules in a robot with clusters, at most: the vectors of more leave no memory for them.
 inline constexpr int kClusterPlannedMax = 2;
@@ -29,7 +28,7 @@ inline constexpr int kMasksOfPart = kPlannedMax + 1;
 
 /// A set of planned modules, by index.
 class PlannedSet {
-  using Bits = std::conditional_t<kPlansMany, std::uint32_t, std::uint8_t>;
+  using Bits = std::conditional_t<kIsGeneral, std::uint32_t, std::uint8_t>;
 
  public:
   void add(int index) { bits_ = static_cast<Bits>(bits_ | bit(index)); }

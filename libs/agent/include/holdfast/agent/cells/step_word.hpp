@@ -12,16 +12,8 @@
 /// A step of a reconfiguration as modules are told of it, word by word (docs/distributed.md).
 namespace holdfast::agent {
 
-/// Can the program judge the stages of a step? It is left out of programs for modules with little
-/// flash, with what renews verdicts.
-#ifdef HOLDFAST_AGENT_STARTS_AFRESH
-inline constexpr bool kJudgesStages = false;
-#else
-inline constexpr bool kJudgesStages = true;
-#endif
-
 /// Words that a plan may have, in a program that knows any; one has a place for names' sake.
-inline constexpr std::uint8_t kWordCountMax = kJudgesStages ? 16 : 1;
+inline constexpr std::uint8_t kWordCountMax = kKeepsAnswers ? 16 : 1;
 
 /// Groups that move at once.
 inline constexpr std::uint8_t kGroupCount = 4;

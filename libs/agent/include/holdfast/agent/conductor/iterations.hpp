@@ -21,9 +21,7 @@ struct Accuracy {
   double error_best;  ///< Since contact states have changed.
   double target;      ///< The error that is good enough.
   std::uint8_t stagnation_count;
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
-  std::uint8_t slack_bits;  ///< Setup::slack_bits
-#endif
+  [[no_unique_address]] PresentIf<kIsGeneral, std::uint8_t> slack_bits;  ///< Setup::slack_bits
 
   /// An equilibrium begins.
   void begin(const Whole& whole);
@@ -56,8 +54,10 @@ struct Newton {
 
 /// Rigid clusters between two polynomials (rigid_clusters.hpp).
 struct ClusterChoice {
-  bool has;       ///< Iterations are taken with clusters, ...
-  bool had;       ///< ... as the last one was.
+  /// Iterations are taken with clusters, ...
+  [[no_unique_address]] PresentIf<kHasAllMethods, bool> has;
+  /// ... as the last one was.
+  [[no_unique_address]] PresentIf<kHasAllMethods, bool> had;
   bool has_left;  ///< They brought nothing: never again.
 
   /// Does the order that begins find them?

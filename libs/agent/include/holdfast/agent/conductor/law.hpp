@@ -44,7 +44,7 @@ class Law {
   bool is_tilting() const { return is_tilting_; }
 
   /// May weak springs away from a level floor carry?
-  bool may_pull() const { return kHasSurroundings && may_pull_; }
+  bool may_pull() const { return kIsGeneral && may_pull_; }
 
   /// May a facet have a second state?
   bool may_differ() const { return may_differ_; }
@@ -57,7 +57,7 @@ class Law {
   /// The unilateral law is asked as well, as weak springs may pull.
   void ask_second() { is_second_ = true; }
 
-  bool is_second() const { return kHasSurroundings && is_second_; }
+  bool is_second() const { return kIsGeneral && is_second_; }
 
   /// Open feet are freed, to see whether the verdict stays.
   Order free_open_feet();
@@ -76,7 +76,7 @@ class Law {
 
   bool is_any_held_open() const { return open_held_count_ > 0; }
 
-  bool is_toppling() const { return kHasSurroundings && springs_ == WeakSprings::kToppling; }
+  bool is_toppling() const { return kIsGeneral && springs_ == WeakSprings::kToppling; }
 
   /// The verdict by the largest load ratio, `first` as it was told and `ratio` at the last
   /// judgement, whose error is bounded. `other_fails`: another solution does.

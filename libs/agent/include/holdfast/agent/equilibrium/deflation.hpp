@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "holdfast/agent/cells/lattices.hpp"
-#include "holdfast/agent/wire/wire.hpp"
+#include "holdfast/agent/messages/order.hpp"
 #include "holdfast/base/algebra.hpp"
 
 /// The slow modes of a robot that grows, from how it has moved before.
@@ -28,10 +28,6 @@
 /// iterations and their error bounds hold for any.
 namespace holdfast::agent {
 
-/// A number for each change that is kept.
-template <class Real>
-using Along = std::array<Real, wire::kKeptMax>;
-
 /// The root's part.
 class Deflation {
  public:
@@ -43,7 +39,7 @@ class Deflation {
   std::uint8_t place();
 
   /// The solve begins with the products W' r, and with E.
-  void begin(const Along<float>& residual, const std::array<float, wire::kKeptPairs>& energies);
+  void begin(const Along<float>& residual, const Energies& energies);
 
   /// A solve has ended after so many iterations; 0: its change is of no use. One that is the first
   /// of a round says nothing of how many it takes.
@@ -98,7 +94,7 @@ class Deflation {
 struct KeptChanges {
   /// Those that are kept, and the last one that of the solve that goes on.
   std::array<base::Vec6<float>, wire::kKeptMax + 1> changes{};
-  std::array<float, wire::kKeptPairs> energies{};  ///< This module's part of E.
+  Energies energies{};     ///< This module's part of E.
   bool has_begun = false;  ///< Equilibria have begun: what neighbours say comes too late.
   Faces heard;             ///< A module that has come: whose changes have added to its own.
   Deflation deflation;     ///< The root's.

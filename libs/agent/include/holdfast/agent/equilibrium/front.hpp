@@ -63,7 +63,7 @@ struct KeptNode {
   mechanics::ContactState found = {};  ///< When others were sought (kSeek), ...
   bool is_doubtful = false;            ///< ... and whether another state leads elsewhere.
   base::Cell cell = {};                ///< As seen from the root.
-  Surroundings* surroundings = nullptr;
+  [[no_unique_address]] PresentIf<kIsGeneral, Surroundings*> surroundings = nullptr;
 };
 
 /// What one module needs for its fronts. The caller owns it: whoever has no such memory has other

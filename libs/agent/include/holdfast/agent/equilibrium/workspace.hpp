@@ -38,17 +38,19 @@ struct Workspace {
   int node_count() const { return 1 + planned.hosted_count(); }
 
   /// Null where there are no fronts.
-  FrontMemory* front_memory() const { return lent == nullptr ? nullptr : lent->fronts; }
+  FrontMemory* front_memory() const {
+    return kHasAllMethods && lent != nullptr ? lent->fronts : nullptr;
+  }
 
   /// What there is beside a floor, or null.
   const Environment* environment() const {
-    const Environment* all = kHasSurroundings && lent != nullptr ? lent->environment : nullptr;
+    const Environment* all = kIsGeneral && lent != nullptr ? lent->environment : nullptr;
     const bool is_left = all != nullptr && all->connected != nullptr && stage() == Stage::kConnect;
     return is_left ? all->connected : all;
   }
 
   /// Null where steps are not judged in stages.
-  Stages* stages() const { return kJudgesStages && lent != nullptr ? lent->stages : nullptr; }
+  Stages* stages() const { return kKeepsAnswers && lent != nullptr ? lent->stages : nullptr; }
 
   /// The stage of a step that is judged, or kNone.
   Stage stage() const { return stages() == nullptr ? Stage::kNone : stages()->stage(); }
@@ -66,7 +68,7 @@ struct Workspace {
     return is_own_node(index) ? nodes[static_cast<std::size_t>(index)] : more_node(index);
   }
 
-  static bool is_own_node(int index) { return !kPlansMany || index <= kPlannedMax; }
+  static bool is_own_node(int index) { return !kIsGeneral || index <= kPlannedMax; }
 
   /// Of a planned module for which there is no room in the module itself.
   Node& more_node(int index) const {
@@ -81,10 +83,14 @@ struct Workspace {
   Faces faces_of(int node) const;
 
   /// Null where free faces are not judged.
-  FreeFaces* free_faces() const { return lent == nullptr ? nullptr : lent->free_faces; }
+  FreeFaces* free_faces() const {
+    return kKeepsAnswers && lent != nullptr ? lent->free_faces : nullptr;
+  }
 
   /// Null where iterations are not deflated.
-  KeptChanges* kept_changes() const { return lent == nullptr ? nullptr : lent->changes; }
+  KeptChanges* kept_changes() const {
+    return kKeepsAnswers && lent != nullptr ? lent->changes : nullptr;
+  }
 
   /// What the beam at a face carries in its middle.
   MiddleLoad& middle(Direction face) {
@@ -96,15 +102,13 @@ struct Workspace {
   }
 
   /// What connections with laws of their own carry besides, or null.
-  AcrossLoads* across() const {
-    return kHasSurroundings && lent != nullptr ? lent->across : nullptr;
-  }
+  AcrossLoads* across() const { return kIsGeneral && lent != nullptr ? lent->across : nullptr; }
 
   void clear_middle();
 
   /// Adds to across() what the beam at a face carries, given the force in its middle.
   void add_across(Direction face, const base::Vec6<double>& force) {
-    if (AcrossLoads* loads = across(); kHasSurroundings && loads != nullptr) {
+    if (AcrossLoads* loads = across(); loads != nullptr) {
       std::array<double, 3>& load = (*loads)[static_cast<std::size_t>(face)];
       load = {load[0] + force[0], load[1] + force[1], load[2] + force[5]};
     }
@@ -121,7 +125,7 @@ struct Workspace {
 
   /// The same, from nothing.
   void set_across(Direction face, const base::Vec6<double>& force) {
-    if (AcrossLoads* loads = across(); kHasSurroundings && loads != nullptr) {
+    if (AcrossLoads* loads = across(); loads != nullptr) {
       (*loads)[static_cast<std::size_t>(face)] = {force[0], force[1], force[5]};
     }
   }

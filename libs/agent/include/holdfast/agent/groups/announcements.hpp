@@ -53,13 +53,11 @@ struct AnnouncedPlaces {
 
 class Announcements {
  public:
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
   /// Lends room for kAnnouncedMost. Once, before all else.
   void lend(AnnouncedPlaces* places) {
     cells_.lent = places;
     is_lent_ = true;
   }
-#endif
 
   /// The module is told of a planned cell.
   void plan(const base::Cell& cell);
@@ -102,13 +100,9 @@ class Announcements {
   bool is_overfull() const { return lost_ != Told::kNothing; }
 
   /// False only of memory that never was one.
-  bool is_sound() const { return count_ <= kAnnouncedMax && !is_lent(); }
+  bool is_sound() const { return count_ <= kAnnouncedMax && !is_lent_; }
 
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-  friend bool operator==(const Announcements&, const Announcements&) = default;
-#else
   friend bool operator==(const Announcements& one, const Announcements& other);
-#endif
 
  private:
   int find(const base::Cell& cell) const;
@@ -117,25 +111,10 @@ class Announcements {
 
   void clear();
 
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-  static constexpr bool is_lent() { return false; }
-
-  std::span<base::Cell> cells() { return cells_; }
-
-  std::span<const base::Cell> cells() const { return cells_; }
-
-  std::span<Told> tolds() { return told_; }
-
-  std::span<const Told> tolds() const { return told_; }
-
-  std::array<base::Cell, kAnnouncedMax> cells_{};
-#else
   union Cells {
     std::array<base::Cell, kAnnouncedMax> own{};
     AnnouncedPlaces* lent;  ///< Not owned.
   };
-
-  bool is_lent() const { return is_lent_; }
 
   std::span<base::Cell> cells() {
     return is_lent_ ? std::span<base::Cell>(cells_.lent->cells) : cells_.own;
@@ -152,13 +131,10 @@ class Announcements {
   }
 
   Cells cells_;
-#endif
   std::array<Told, kAnnouncedMax> told_{};
   std::uint8_t count_ = 0;
   Told lost_ = Told::kNothing;  ///< As of plans that found no place.
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
-  bool is_lent_ = false;
-#endif
+  [[no_unique_address]] PresentIf<kIsGeneral, bool> is_lent_ = false;
 };
 
 }  // namespace holdfast::agent

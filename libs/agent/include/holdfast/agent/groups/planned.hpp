@@ -7,6 +7,7 @@
 
 #include "holdfast/agent/cells/lattices.hpp"
 #include "holdfast/agent/cells/planned_set.hpp"
+#include "holdfast/agent/world/lent_memory.hpp"
 #include "holdfast/base/cell.hpp"
 
 /// The planned modules and who emulates them.
@@ -19,26 +20,14 @@
 /// routing table.
 namespace holdfast::agent {
 
-struct MoreFaces;
-struct MorePlanned;
-struct LentMemory;
-
 class Planned {
  public:
   /// Lends memory for faces that cubes do not have, and for more planned modules. Once, before all
   /// else.
-  void lend([[maybe_unused]] const LentMemory* lent) {
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
-    lent_ = lent;
-#endif
-  }
+  void lend(const LentMemory* lent) { lent_ = lent; }
 
   /// Null: kPlannedMax planned modules at most.
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-  static constexpr MorePlanned* more_planned() { return nullptr; }
-#else
-  MorePlanned* more_planned() const;
-#endif
+  MorePlanned* more_planned() const { return lent_ == nullptr ? nullptr : lent_->planned; }
 
   void clear();
 
@@ -85,17 +74,15 @@ class Planned {
 
   /// How many parts there are, one at least, ...
   int part_count() const {
-    return kPlansMany && count_ > kMasksOfPart ? (count_ + kMasksOfPart - 1) / kMasksOfPart : 1;
+    return kIsGeneral && count_ > kMasksOfPart ? (count_ + kMasksOfPart - 1) / kMasksOfPart : 1;
   }
 
   /// ... and, where there are several, are here.
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-  static constexpr bool has_all_parts() { return true; }
-#else
   int parts_here() const { return parts_here_; }
 
-  bool has_all_parts() const { return count_ <= kMasksOfPart || parts_here_ == part_count(); }
-#endif
+  bool has_all_parts() const {
+    return !kIsGeneral || count_ <= kMasksOfPart || parts_here_ == part_count();
+  }
 
   /// Faces of planned module `index` that touch any module.
   Faces total(int index) const { return is_own(index) ? totals_[at(index)] : more_total(index); }
@@ -110,11 +97,7 @@ class Planned {
   int at_face(base::Direction face) const;
 
   /// All directions of the lattice.
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-  static Directions directions() { return base::kDirections; }
-#else
-  Directions directions() const;
-#endif
+  base::DirectionRange directions() const;
 
   /// The planned neighbour of planned module `index` in a direction, or -1.
   int neighbour_of(int index, base::Direction direction) const;
@@ -151,7 +134,7 @@ class Planned {
   static std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
   /// Does this module itself have room for planned module `index`?
-  static bool is_own(int index) { return !kPlansMany || index < kPlannedMax; }
+  static bool is_own(int index) { return !kIsGeneral || index < kPlannedMax; }
 
   template <class T>
   T& place(ByPlanned<T>& own, ByMorePlanned<T> MorePlanned::*lent, int index);
@@ -166,11 +149,7 @@ class Planned {
 
   std::uint8_t group_of(int index) const;
 
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-  static constexpr MoreFaces* more() { return nullptr; }
-#else
-  MoreFaces* more() const;
-#endif
+  MoreFaces* more() const { return lent_ == nullptr ? nullptr : lent_->faces; }
 
   /// What planned module `index` touches below the child at `child`.
   Faces below(base::Direction child, int index) const;
@@ -180,16 +159,13 @@ class Planned {
   bool is_whole_below(std::uint8_t group, base::Direction child) const;
   bool is_any_below(std::uint8_t group, base::Direction child) const;
 
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
-  const LentMemory* lent_ = nullptr;  ///< Not owned; may be null.
-#endif
+  /// Not owned; may be null.
+  [[no_unique_address]] PresentIf<kIsGeneral, const LentMemory*> lent_ = nullptr;
   PlannedSet from_above_;
   std::uint8_t count_ = 0;
   std::uint8_t hosted_count_ = 0;
   bool is_any_remote_ = false;
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
-  std::uint8_t parts_here_ = 0;
-#endif
+  [[no_unique_address]] PresentIf<kIsGeneral, std::uint8_t> parts_here_ = {};
   ByPlanned<std::uint8_t> groups_{};
   ByPlanned<std::uint8_t> hosted_{};
   /// Faces by child, of cubes; others have them in memory that is lent.

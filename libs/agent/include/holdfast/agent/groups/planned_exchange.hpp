@@ -30,7 +30,7 @@ class PlannedExchange {
   /// An exchange begins: forces are added up anew.
   void clear_forces(MorePlanned* more) {
     force_ = {};
-    if (kPlansMany && more != nullptr) {
+    if (more != nullptr) {
       more->force = {};
     }
   }
@@ -88,9 +88,9 @@ class PlannedExchange {
 
  private:
   /// Two messages a planned module and child.
-  using Count = std::conditional_t<kPlansMany, std::uint16_t, std::uint8_t>;
+  using Count = std::conditional_t<kIsGeneral, std::uint16_t, std::uint8_t>;
 
-  static bool is_own(int index) { return !kPlansMany || index < kPlannedMax; }
+  static bool is_own(int index) { return !kIsGeneral || index < kPlannedMax; }
 
   static std::size_t at(int index) { return static_cast<std::size_t>(index); }
 

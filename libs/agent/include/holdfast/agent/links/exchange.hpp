@@ -68,7 +68,7 @@ class Exchange {
   const base::Vec6<float>& vector(const MoreFaces* more, Direction face, unsigned ahead) const {
     const auto i = static_cast<std::size_t>(face);
     const std::size_t buffer = slot(ahead);
-    return !kKnowsLattices || i < vectors_[buffer].size()
+    return !kIsGeneral || i < vectors_[buffer].size()
                ? vectors_[buffer][i]
                : more->vectors[buffer][i - vectors_[buffer].size()];
   }

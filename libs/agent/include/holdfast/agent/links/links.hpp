@@ -29,13 +29,7 @@ class Links {
   void lend(MoreFaces* more);
 
   /// Null: the module is a cube.
-  MoreFaces* more() const {
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-    return nullptr;
-#else
-    return more_;
-#endif
-  }
+  MoreFaces* more() const { return more_; }
 
   /// All faces of the module.
   Faces all() const { return all_faces(more()); }
@@ -73,10 +67,8 @@ class Links {
   /// Lends every link a longer queue, `face` times Link::kLentBytes from here.
   void lend(std::uint8_t* queues);
 
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
   /// The same, for all faces there may be, `face` times Link::kPlannedBytes from here.
   void lend_long(std::uint8_t* queues);
-#endif
 
   /// Has a neighbour fallen silent by what was sent since the last call?
   bool take_refusal();
@@ -155,9 +147,7 @@ class Links {
     return at_face(deadline_, more(), &MoreFaces::deadline, face);
   }
 
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
-  MoreFaces* more_ = nullptr;  ///< Not owned.
-#endif
+  [[no_unique_address]] PresentIf<kIsGeneral, MoreFaces*> more_ = nullptr;  ///< Not owned.
   ByFace<Link> links_;
   ByFace<Time> deadline_{};
   Faces touched_;  ///< Whose link has changed in this step.

@@ -40,35 +40,31 @@ template <class T>
 constexpr T& at_face(ByFace<T>& own, MoreFaces* more, ByFace<T> MoreFaces::*lent,
                      base::Direction face) {
   const auto i = static_cast<std::size_t>(face);
-  return !kKnowsLattices || i < own.size() ? own[i] : (more->*lent)[i - own.size()];
+  return !kIsGeneral || i < own.size() ? own[i] : (more->*lent)[i - own.size()];
 }
 
 template <class T>
 constexpr const T& at_face(const ByFace<T>& own, const MoreFaces* more, ByFace<T> MoreFaces::*lent,
                            base::Direction face) {
   const auto i = static_cast<std::size_t>(face);
-  return !kKnowsLattices || i < own.size() ? own[i] : (more->*lent)[i - own.size()];
+  return !kIsGeneral || i < own.size() ? own[i] : (more->*lent)[i - own.size()];
 }
 
 /// The cell next to `cell` at a face, in the lattice of `more`; without, in that of cubes.
 constexpr base::Cell neighbour(const MoreFaces* more, const base::Cell& cell,
                                base::Direction face) {
-  return !kKnowsLattices || more == nullptr ? base::neighbour(cell, face)
-                                            : base::neighbour(*more->lattice, cell, face);
+  return !kIsGeneral || more == nullptr ? base::neighbour(cell, face)
+                                        : base::neighbour(*more->lattice, cell, face);
 }
 
 /// How many faces a module has.
 constexpr int face_count(const MoreFaces* more) {
-  return !kKnowsLattices || more == nullptr ? kOwnFaceCount : more->lattice->direction_count;
+  return !kIsGeneral || more == nullptr ? kOwnFaceCount : more->lattice->direction_count;
 }
 
 /// The directions of all faces of a module.
-constexpr Directions directions([[maybe_unused]] const MoreFaces* more) {
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-  return base::kDirections;
-#else
-  return Directions(face_count(more));
-#endif
+constexpr base::DirectionRange directions(const MoreFaces* more) {
+  return base::DirectionRange(face_count(more));
 }
 
 /// All faces of a module.

@@ -57,15 +57,23 @@ const char* name(Verdict verdict);
 const char* name(Reason reason);
 
 /// What every module knows in the end.
+/// A connection's remarks, where connections have laws of their own.
+using Remarks = PresentIf<kIsGeneral, std::uint8_t>;
+
+/// A real for each change of displacement that is kept (deflation.hpp).
+template <class Real>
+using Along = std::array<Real, wire::kKeptMax>;
+
+/// Products of each two of them in the energy.
+using Energies = std::array<float, wire::kKeptPairs>;
+
 struct Answer {
   Verdict verdict = Verdict::kNone;
   Reason reason = Reason::kNone;
   float load_ratio_max = 0;    ///< Not meaningful if unstable or undecided.
   base::Cell worst_cell = {};  ///< The worst connection: this cell and its neighbour ...
   base::Direction worst_direction = base::Direction::kPlusX;  ///< ... in this direction.
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
-  std::uint8_t remarks = 0;  ///< kLimitBits, kGapOpens
-#endif
+  [[no_unique_address]] Remarks remarks = {};                 ///< kLimitBits, kGapOpens
 
   friend constexpr bool operator==(const Answer&, const Answer&) = default;
 };
@@ -107,10 +115,8 @@ struct Order {
   std::array<std::int32_t, 2> moment{};  ///< The same: first moments in x and y, units times cells.
   std::array<float, 3> reals{};
   Answer answer = {};  ///< kVerdict; kStage: of the stage that was judged.
-#ifndef HOLDFAST_AGENT_STARTS_AFRESH
-  std::array<float, wire::kKeptMax>
-      along{};  ///< kIterateDeflated, kIterateLast: by kept change, how far.
-#endif
+  /// kIterateDeflated, kIterateLast: by kept change, how far.
+  [[no_unique_address]] PresentIf<kKeepsAnswers, Along<float>> along = {};
 
   // kBegin, kClusters, kResume
   constexpr float gamma() const { return reals[0]; }  ///< Share of weak springs in open facets.
@@ -203,16 +209,14 @@ struct Report {
   std::array<double, 3> products{};  ///< kIterate
   base::Cell cell = {};
   base::Direction direction = base::Direction::kPlusX;
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
-  std::uint8_t remarks = 0;  ///< kLoads, kClose: kLimitBits, kGapOpens, kFacetSlips
-#endif
+  /// kLoads, kClose: kLimitBits, kGapOpens, kFacetSlips
+  [[no_unique_address]] Remarks remarks = {};
   SafeCorners feet = {};
   mechanics::SupportCorners corners = {};
-#ifndef HOLDFAST_AGENT_STARTS_AFRESH
   /// The same, and kResumeDeflated: products of the residual with the changes that are kept.
-  std::array<float, wire::kKeptMax> along{};
-  std::array<float, wire::kKeptPairs> energies{};  ///< kResumeDeflated: w_i' K w_j
-#endif
+  [[no_unique_address]] PresentIf<kKeepsAnswers, Along<float>> along = {};
+  /// kResumeDeflated: w_i' K w_j
+  [[no_unique_address]] PresentIf<kKeepsAnswers, Energies> energies = {};
 
   // kIterate, kTreeIterate
   constexpr float error() const { return reals[0]; }  ///< Bound on the error of load ratios.

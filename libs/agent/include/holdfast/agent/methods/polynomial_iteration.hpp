@@ -43,7 +43,7 @@ class PolynomialIteration {
  private:
   std::span<IterationMemory> memory(const Workspace& ws) {
     MorePlanned* more = ws.planned.more_planned();
-    return kPlansMany && more != nullptr ? std::span<IterationMemory>(more->iterations) : memory_;
+    return more != nullptr ? std::span<IterationMemory>(more->iterations) : memory_;
   }
 
   std::array<IterationMemory, 1 + kPlannedMax> memory_{};

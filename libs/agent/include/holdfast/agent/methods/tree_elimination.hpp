@@ -103,7 +103,7 @@ class TreeElimination {
 
   Above& stiffness_above(const Workspace& ws, int leaf) {
     const auto i = static_cast<std::size_t>(leaf);
-    return !kPlansMany || leaf < kPlannedMax
+    return !kIsGeneral || leaf < kPlannedMax
                ? stiffness_above_[i]
                : ws.planned.more_planned()->stiffness_above[i - kPlannedMax];
   }

@@ -70,13 +70,11 @@ class Link {
   /// acknowledges every second packet that is full at once.
   void lend(std::uint8_t* queue) { lent_ = queue; }
 
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
   /// The same, kPlannedBytes.
   void lend_long(std::uint8_t* queue) {
     lent_ = queue;
     is_long_ = true;
   }
-#endif
 
   /// The neighbour has said what it must not: it counts as silent, and is not listened to any more.
   void lose();
@@ -141,11 +139,7 @@ class Link {
   /// Is a neighbour greeted that has fallen silent?
   bool is_calling() const { return state_ == State::kLost && retry_at_ != kNever; }
 
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-  static constexpr bool is_long() { return false; }
-#else
   bool is_long() const { return is_long_; }
-#endif
 
   State state_ = State::kDown;
   bool needs_greeting_ = false;
@@ -175,9 +169,8 @@ class Link {
   std::array<std::uint8_t, wire::kMessageBytesMax> message_{};
   std::uint8_t message_bytes_ = 0;  ///< Here so far, ...
   std::uint8_t message_size_ = 0;   ///< ... of so many.
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
-  bool is_long_ = false;  ///< What is lent has kPlannedBytes.
-#endif
+  /// What is lent has kPlannedBytes.
+  [[no_unique_address]] PresentIf<kIsGeneral, bool> is_long_ = false;
   Time acknowledge_at_ = kNever;
   Time heard_at_ = 0;
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "holdfast/agent/features.hpp"
 #include "holdfast/agent/wire/wire.hpp"
 
 /// The one table of operations: what each costs, when it exchanges, and its names.
@@ -142,6 +143,23 @@ inline constexpr auto kExchanges = column(&OperationInfo::exchanges);
 inline constexpr auto kPhases = column(&OperationInfo::phase);
 inline constexpr auto kIsPrecise = column(&OperationInfo::is_precise);
 }  // namespace columns
+
+/// Does an iteration go along what is kept, if anything is?
+constexpr bool is_deflated(wire::Operation operation) {
+  return kKeepsAnswers && (operation == wire::Operation::kIterateDeflated ||
+                           operation == wire::Operation::kIterateLast);
+}
+
+/// Is this an iteration of the polynomial?
+constexpr bool is_iterate(wire::Operation operation) {
+  return operation == wire::Operation::kIterate || is_deflated(operation);
+}
+
+/// Does an equilibrium begin from what is kept?
+constexpr bool is_resume(wire::Operation operation) {
+  return kKeepsAnswers &&
+         (operation == wire::Operation::kResume || operation == wire::Operation::kResumeDeflated);
+}
 
 /// Do digits of forces beyond single precision count?
 constexpr bool is_precise(wire::Operation operation) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 
+#include "holdfast/agent/features.hpp"
 #include "holdfast/base/cell.hpp"
 
 /// The bytes that modules exchange. docs/wire.md specifies them; this is the only code that knows.
@@ -34,11 +35,7 @@ inline constexpr int kKeptMax = 4;
 inline constexpr int kKeptPairs = kKeptMax * (kKeptMax + 1) / 2;
 /// The largest message but those about changes that are kept.
 inline constexpr int kPlainBytesMax = 41;
-#ifdef HOLDFAST_AGENT_STARTS_AFRESH
-inline constexpr int kMessageBytesMax = kPlainBytesMax;
-#else
-inline constexpr int kMessageBytesMax = 70 + 4 * kKeptMax;
-#endif
+inline constexpr int kMessageBytesMax = kKeepsAnswers ? 70 + 4 * kKeptMax : kPlainBytesMax;
 inline constexpr int kVectorBytes = 26;  ///< Size of the messages with six reals.
 inline constexpr int kCellBytes = 9;
 

@@ -61,10 +61,8 @@ struct Node {
   bool is_doubtful = false;        ///< ... and whether there may be another one.
   NodeVector vector;
   NodeMatrix matrix;
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
   /// Lent; null: a floor only. Else the facets have states of their own, and those above are void.
-  Surroundings* surroundings = nullptr;
-#endif
+  [[no_unique_address]] PresentIf<kIsGeneral, Surroundings*> surroundings = nullptr;
 
   base::Vec6<double> u{};
   base::Vec6<float> anchor{};  ///< Where facets have acted by their own tangents last.

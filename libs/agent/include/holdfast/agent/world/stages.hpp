@@ -191,7 +191,7 @@ class Stages {
                                       const base::Cell& cell, const Setup& setup) const;
 
   const base::Lattice* lattice_ = &base::kCubic;
-  const Environment* environment_ = nullptr;
+  [[no_unique_address]] PresentIf<kIsGeneral, const Environment*> environment_ = nullptr;
   std::array<StepWord, kWordCountMax> words_{};
   std::array<Answer, kStageCount> answers_{};
   base::Vec6<double> hung_{};
