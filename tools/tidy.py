@@ -29,7 +29,7 @@ FOLDER_FILES_MAX = 25
 FRAGMENT = re.compile(r'(After|Also|And|As|At|Before|But|By|False|For|From|In|Its?|None|Null|'
                       r'nullptr|Of|On|So|Such|That|The same|They|Those|To|Towards|Which|Whose?|'
                       r'With|Without)\b')
-FRAGMENT_ROOMS = ('libs/agent/', 'libs/limit/', 'libs/module/', 'libs/plan/', 'libs/solver/',
+FRAGMENT_ROOMS = ('libs/limit/', 'libs/module/', 'libs/plan/', 'libs/solver/',
                   'extras/emulator/', 'firmware/')  # To be reworded, then taken off.
 FREESTANDING = {'base', 'boards', 'mechanics', 'agent', 'module'}
 APPLICATIONS = ('apps/', 'examples/', 'python/')

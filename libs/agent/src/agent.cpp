@@ -209,7 +209,7 @@ void Agent::notice_change(Direction face) {
 /// What is left of a packet belongs to a link that is no more.
 void Agent::forget_packet(Direction face) { is_receiving_ = is_receiving_ && packet_face_ != face; }
 
-/// False: no working neighbour sends this message now.
+/// Is false if no working neighbour sends this message now.
 bool Agent::take(Direction face, std::span<const std::uint8_t> message) {
   const auto type = static_cast<MessageType>(message[0]);
   if (type == MessageType::kJoin) {

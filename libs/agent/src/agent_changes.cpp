@@ -60,8 +60,8 @@ void Agent::tell(const News& news) {
   }
 }
 
-/// Of the parent, to a module that has come: what is planned. Of a child, for the root: if the root
-/// has begun to renew its verdict already, a plan will be reported to it all the same.
+/// News of the parent, to a module that has come: what is planned. News of a child, for the root:
+/// if the root has begun to renew its verdict already, a plan will be reported to it all the same.
 void Agent::take_news(Direction face, const News& news) {
   if (!ws_.tree.children().has(face)) {
     if (ws_.tree.parent().has(face) && ws_.planned.find(news.cell) < 0) {

@@ -102,7 +102,7 @@ VectorXd vector_of(const Along<float>& along) {
   return values;
 }
 
-/// So many solves have ended, and each change was kept.
+/// This many solves have ended, and each change was kept.
 Deflation deflation_with(int changes) {
   Deflation deflation;
   for (int i = 0; i < changes; ++i) {
@@ -268,7 +268,7 @@ double energy_of(const Model& model, const VectorXd& error) {
   return error.dot(model.stiffness * error);
 }
 
-/// In the energy's norm, of the first error.
+/// The distance in the energy's norm, of the first error.
 double distance(const Model& model, const VectorXd& a, const VectorXd& b) {
   const VectorXd solution = model.stiffness.llt().solve(model.load);
   return std::sqrt(energy_of(model, a - b) / energy_of(model, solution));

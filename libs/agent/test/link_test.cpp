@@ -73,7 +73,7 @@ void open(Link& a, Link& b, std::uint16_t nonce_a = 0x1234, std::uint16_t nonce_
   ASSERT_EQ(b.state(), Link::State::kOpen);
 }
 
-/// In percent of packets.
+/// Shares in percent of packets.
 struct Faults {
   std::uint64_t lost = 0;
   std::uint64_t doubled = 0;
@@ -627,7 +627,7 @@ TEST(Link, is_lost_to_modules_of_another_lattice) {
   }
 }
 
-/// So do catoms: they know those of their own lattice only.
+/// Catoms do the same: they know those of their own lattice only.
 TEST(Link, of_another_lattice_is_lost_to_cubes) {
   const LinkTiming timing = {.lattice = wire::kFaceCentredLattice};
   for (const std::uint8_t lattice : {wire::kCubicLattice, wire::kFaceCentredLattice}) {

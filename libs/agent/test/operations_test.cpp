@@ -18,7 +18,7 @@ using wire::Operation;
 
 constexpr std::uint16_t kDegree = 7;
 
-/// Before the report, then behind it.
+/// Counts before the report, then behind it.
 struct Counts {
   int before = 0;
   int behind = 0;

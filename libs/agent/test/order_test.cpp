@@ -478,7 +478,7 @@ TEST(Order, changed_facets_do_not_wrap) {
   EXPECT_EQ(many.extent, 0xffff);
 }
 
-/// From whichever side it comes, and whatever comes after it.
+/// NaN survives from whichever side it comes, and whatever comes after it.
 TEST(Order, what_is_not_a_number_survives) {
   const Report one = {.reals = {1, 1}};
   for (const float other : {-1e30F, 0.5F, 2.0F, kNan}) {

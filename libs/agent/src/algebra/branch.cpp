@@ -164,7 +164,7 @@ Which three_from(int first) {
 
 }  // namespace
 
-/// In the local frame F is two 2x2 blocks and two numbers.
+/// F is, in the local frame, two 2x2 blocks and two numbers.
 Joint::Joint(Beams<double> beams, Direction direction) : beams_(beams), direction_(direction) {
   const BeamStiffness<double>& beam = stiffness_of(beams);
   const double pitch = 2 * beam.couple_x / beam.shear_x;  // c/s = L/2

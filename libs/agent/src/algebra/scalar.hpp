@@ -31,7 +31,7 @@ Real square_root(Real value) {
   return root;
 }
 
-/// Of a vector.
+/// The length of a vector.
 inline double length(double x, double y) {
   const double square = x * x + y * y;
   return is_number(square) ? square_root(square) : square;

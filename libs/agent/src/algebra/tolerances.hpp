@@ -18,12 +18,12 @@ inline constexpr double kStateTolerance = 2e-2;
 /// whether they do decides what carries: contact states are told at this accuracy.
 inline constexpr double kUnevenTolerance = 1e-7;
 
-/// At this share of it by elimination, of which two steps leave a residual of some 1e-11. Then
+/// Elimination ends at this share of it, of which two steps leave a residual of some 1e-11. Then
 /// smaller pressures can be told from none, as the exact solver tells them down to 1e-9.
 inline constexpr double kEliminatedShare = 0.1;
 
-/// At so many times of it where that is not reached: displacements of a robot that hangs on weak
-/// springs are so large that their last digits are forces.
+/// Iterations halt at so many times of it where that is not reached: displacements of a robot that
+/// hangs on weak springs are so large that their last digits are forces.
 inline constexpr double kHalting = 10;
 
 /// A verdict needs the largest ratio this many times its error bound away from 1: in indeterminate
@@ -50,13 +50,13 @@ inline constexpr double kUnilateralGamma = 1e-9;
 /// exact solver.
 inline constexpr double kStifferGamma = 1e-6;
 
-/// So much may weak springs move load ratios, for their share of the contact's stiffness: an arm of
-/// twenty modules with a lifted foot at its tip bears 2e-5 less by springs of 1e-9, one of sixty,
-/// which lifts it by metres, 3e-4. (The exact solver takes them back.)
+/// How much weak springs may move load ratios, for their share of the contact's stiffness: an arm
+/// of twenty modules with a lifted foot at its tip bears 2e-5 less by springs of 1e-9, one of
+/// sixty, which lifts it by metres, 3e-4. (The exact solver takes them back.)
 inline constexpr double kRatioPerGamma = 1e5;
 
-/// Those of a robot that seems to hang on them, as in the exact solver; it is never `safe` by
-/// these.
+/// Weak springs of a robot that seems to hang on them, as in the exact solver; it is never `safe`
+/// by these.
 inline constexpr double kTopplingGamma = 1e-4;
 
 }  // namespace holdfast::agent

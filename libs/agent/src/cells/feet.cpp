@@ -62,7 +62,7 @@ std::int64_t half_parts_of_facet(const Setup& setup) {
   return setup.facet_numerator;
 }
 
-/// From one row of cells along x to the next.
+/// The distance from one row of cells along x to the next.
 template <class Length = FloorLength>
 Length parts_of_row(const Setup& setup) {
   if constexpr (kIsGeneral) {

@@ -502,7 +502,7 @@ Order Conductor::after_renew(const Setup& setup, const Report& report, const Pla
   return ask(order.operation == Operation::kResume ? resume(setup) : order);
 }
 
-/// As the order that begins an equilibrium, with all that went before it.
+/// The order that begins an equilibrium, with all that went before it.
 Order Conductor::resume(const Setup& setup) {
   Order resume = begin_law(setup, false);
   if (resume.operation != Operation::kBegin || !keeps_displacements(whole.effort.method)) {

@@ -30,8 +30,8 @@ constexpr double kLongCorrection = 0.3;
 /// Clusters are tried from this depth on. Below, a polynomial of 1.5 times the depth is as good.
 constexpr int kClusterDepthMin = 64;
 
-/// They are left alone if more than one of so many beams between them is stray. In long robots it
-/// is one in three at most, in solids, shells and scaffolds more than half of them.
+/// Clusters are left alone if more than one of so many beams between them is stray. In long robots
+/// it is one in three at most, in solids, shells and scaffolds more than half of them.
 constexpr std::uint32_t kStrayShare = 2;
 
 /// Degree of each of the two polynomials. They have to smooth what clusters 8 modules long do

@@ -15,7 +15,7 @@ using wire::Operation;
 /// Plans that end in one round, at most; more end as `undecided`.
 constexpr std::uint8_t kForgottenMax = 200;
 
-/// Of many planned modules the masks go down in parts. `planned` has those of the later ones.
+/// The masks of many planned modules go down in parts. `planned` has those of the later ones.
 Order ask_hosts(const Whole& whole, const Planned& planned) {
   Order hosts = order_of(Operation::kHosts);
   hosts.masks = whole.totals;
@@ -46,7 +46,7 @@ bool is_pulled_away(const Setup& setup, const Report& report) {
          pressure < -static_cast<std::int64_t>(report.count);
 }
 
-/// In a plane of supports; what does not fit there is left to the equilibrium.
+/// Does the check in a plane of supports fit? What does not fit there is left to the equilibrium.
 bool fits_plane_check(const Setup& setup, const Report& report, std::uint16_t extent) {
   constexpr std::int64_t kMost = 0x7fffffff;
   const auto fits = [](std::int64_t moment) { return -kMost <= moment && moment <= kMost; };

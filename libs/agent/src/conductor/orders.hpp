@@ -8,7 +8,7 @@
 /// Orders that several of the conductor's strategies make.
 namespace holdfast::agent {
 
-/// Without fields, or with those still to come.
+/// An order without fields, or with those still to come.
 inline Order order_of(wire::Operation operation) { return {.operation = operation}; }
 
 /// The robot is judged.

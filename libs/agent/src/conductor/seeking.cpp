@@ -18,7 +18,7 @@ constexpr int kTrialsMax = 250;
 /// The largest robot of which all states of few facets are tried.
 constexpr std::uint32_t kFewModules = 12;
 
-/// On a level floor a largest load ratio below this is not doubted: of 80 further solutions of
+/// A largest load ratio below this is not doubted on a level floor: of 80 further solutions of
 /// 7,400 random robots none has more than 1.2 times another's. Elsewhere any is, as one may have
 /// 13 times another's.
 constexpr double kDoubtedFrom = 0.75;
@@ -213,7 +213,7 @@ Seeking::Move Seeking::leave_trial(const Whole& whole, bool is_lost, Newton& new
   return {seeks_again(whole) ? Then::kMoreSafely : Then::kAnew};
 }
 
-/// On few feet that are nearly open a method may converge from rest, but not in a trial.
+/// A method, on few feet that are nearly open, may converge from rest, but not in a trial.
 bool Seeking::seeks_again(const Whole& whole) const {
   return is_trial_lost_ && !other_fails_ && whole.effort.method != whole.safest_method();
 }

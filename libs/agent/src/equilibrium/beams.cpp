@@ -35,7 +35,7 @@ const mechanics::ConnectorLaw& law_of(const Workspace& ws, const base::Cell& cel
   return environment.law(environment.map, cell, direction, ws.beside(cell, direction));
 }
 
-/// By the law of the connection.
+/// The load ratio by the law of the connection.
 mechanics::LimitRatio lawful_ratio(const Workspace& ws, const base::Cell& cell,
                                    Direction direction) {
   const mechanics::ConnectorLaw& law = law_of(ws, cell, direction);
@@ -43,7 +43,7 @@ mechanics::LimitRatio lawful_ratio(const Workspace& ws, const base::Cell& cell,
       law, mechanics::connection_force(law, force_in_middle(ws, cell, direction), length));
 }
 
-/// By Eq. (17), but where connections have laws of their own.
+/// The load ratio by Eq. (17), but where connections have laws of their own.
 double ratio_of(const Workspace& ws, const base::Cell& cell, Direction direction,
                 const MiddleLoad& load) {
   if (ws.across() != nullptr) {

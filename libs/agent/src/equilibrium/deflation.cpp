@@ -77,7 +77,8 @@ bool Deflation::uses(std::size_t change) const {
   return false;
 }
 
-/// Those that are kept, newest first, so that the oldest are left out where they say the same.
+/// Takes the changes that are kept, newest first, so that the oldest are left out where they say
+/// the same.
 void Deflation::factor() {
   count_ = 0;
   std::uint32_t before = now_ + 1;
@@ -135,7 +136,7 @@ void Deflation::begin(const Along<float>& residual, const Energies& energies) {
   factor();
 }
 
-/// After two plain solves in a row that were slow, and until one is no better than these.
+/// What is kept is used after two slow plain solves in a row, until one is no better than these.
 void Deflation::end(std::uint32_t iterations, bool is_resumed) {
   has_new_ = iterations > 0;
   if (!has_new_ || !is_resumed) {

@@ -22,7 +22,7 @@ base::Cell from_root(const Workspace& ws, int node) {
   return {cell.x - root.x, cell.y - root.y, cell.z - root.z};
 }
 
-/// The same in cells of FeetCheck.
+/// Where a node is from the root, in cells of FeetCheck.
 base::Cell floor_place(const Workspace& ws, int node) {
   return floor_place(ws.setup, ws.cell_of(node), ws.tree.root_cell());
 }
@@ -185,7 +185,7 @@ Report plan_report(const Workspace& ws, const Announcements& announcements, cons
   return report;
 }
 
-/// Of many planned modules the root knows by itself that they are emulated.
+/// The root knows by itself that many planned modules are emulated.
 Report hosts_report(const Workspace& ws) {
   PlannedSet hosted;
   const bool is_said = !kIsGeneral || ws.planned.count() <= kPlannedMax;

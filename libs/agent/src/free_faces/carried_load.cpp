@@ -15,7 +15,7 @@ MiddleLoad added_load(const Setup& setup, const base::Cell& cell, base::Directio
   return {.axial_n = local[2], .bending_x_nmm = local[3], .bending_y_nmm = local[4]};
 }
 
-/// By kind of connection, axis and sign.
+/// The index of a term, by kind of connection, axis and sign.
 int term_index(bool is_vertical, bool along_y, bool is_rising) {
   return (is_vertical ? 4 : 0) + (along_y ? 2 : 0) + (is_rising ? 1 : 0);
 }

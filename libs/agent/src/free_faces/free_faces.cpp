@@ -16,7 +16,7 @@ using base::Cell;
 using wire::MessageType;
 using wire::Operation;
 
-/// Of the message that goes down before a way is known; those before are the way's parts.
+/// The label of the message that goes down before a way is known; those before are the way's parts.
 constexpr std::uint8_t kOutsideLabel = kReachLabelLast;
 static_assert(LoadWay::kParts == kOutsideLabel);
 
@@ -274,7 +274,7 @@ float FreeFaces::largest_but(const Workspace& ws, Faces left_out) const {
   return largest;
 }
 
-/// To the nearest support here or behind faces that are not left out.
+/// Hops to the nearest support here or behind faces that are not left out.
 std::uint16_t FreeFaces::hops_from_here(const Workspace& ws, Faces left_out) const {
   std::uint16_t hops = is_support(ws.node(0)) ? 0 : hops_outside_;
   for (const Direction face : ws.tree.children() - left_out) {
@@ -433,7 +433,7 @@ FreeFace FreeFaces::judge(const Workspace& ws, const Candidate& candidate) const
   return face;
 }
 
-/// False: with the candidate the robot topples, or cannot be weighed.
+/// Is false if with the candidate the robot topples, or cannot be weighed.
 bool FreeFaces::weigh(const Workspace& ws, const Candidate& candidate, FreeFace& face) const {
   const Cell& root = ws.tree.root_cell();
   std::int32_t mass = 1;

@@ -7,8 +7,8 @@
 namespace holdfast::agent {
 namespace {
 
-/// For rounding in single precision on the wire: of the energy, which is small where its terms are
-/// not.
+/// Room for rounding in single precision on the wire: of the energy, which is small where its terms
+/// are not.
 constexpr double kEnergySafety = 1.01;
 
 double larger_of(double a, double b) { return b > a || b != b ? b : a; }

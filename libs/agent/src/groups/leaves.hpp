@@ -19,7 +19,7 @@ struct Leaves {
 /// All of them hang on the host, or on each other.
 Leaves leaves_of(const Planned& planned);
 
-/// They hang on each other: of each group one module has no parent.
+/// All of them hang on each other: of each group one module has no parent.
 Leaves group_trees(const Planned& planned);
 
 /// Connections between the planned modules of one host, and with it.

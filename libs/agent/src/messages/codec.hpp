@@ -27,7 +27,7 @@ class Codec {
   /// Reads messages of modules with so many faces; else of cubes.
   void set_face_count(int count) { face_count_ = count; }
 
-  /// False once a field was read that no program of this version writes.
+  /// Is false once a field was read that no program of this version writes.
   bool is_legal() const { return is_legal_; }
 
   /// A number from `first` to `last`.
@@ -40,7 +40,7 @@ class Codec {
   /// A part of the masks of planned modules in kResume (resume_masks.hpp).
   void resumed_faces(std::uint8_t& byte);
   void direction(base::Direction& direction);
-  /// In one byte with remarks above it, no others than those of `all`.
+  /// A direction in one byte with remarks above it, no others than those of `all`.
   void direction(base::Direction& direction, std::uint8_t& remarks, std::uint8_t all);
   /// The cell of a module, and of a plan: that, or kEveryCell.
   void cell(base::Cell& cell);

@@ -60,7 +60,7 @@ void merge_mass(Report& into, const Report& from) {
   }
 }
 
-/// Of the cells that are planned besides, the first one.
+/// Keeps the first of the cells that are planned besides.
 void merge_renewal(Report& into, const Report& from) {
   const auto has_more = [](const Report& report) { return (report.flags & kMoreAnnounced) != 0; };
   const bool is_first = has_more(from) == has_more(into) && from.cell < into.cell;
@@ -155,7 +155,7 @@ void merge_keys(Report& into, const Report& from) {
   into.count += from.count;
 }
 
-/// Of two words the least that was found; two that differ are disputed.
+/// Keeps the least of two words that was found; two that differ are disputed.
 void merge_word(Report& into, const Report& from) {
   const auto is_found = [](const Report& report) { return (report.flags & kFound) != 0; };
   const auto order = [&](const Report& report) {
@@ -197,7 +197,7 @@ constexpr void feet_fields(auto& codec, SafeCorners& feet) {
   }
 }
 
-/// In place of the number of corners: the robot is held.
+/// Stands in place of the number of corners: the robot is held.
 constexpr std::uint8_t kHeld = 4;
 
 constexpr void corner_fields(auto& codec, mechanics::SupportCorners& corners) {
@@ -297,7 +297,7 @@ constexpr void step_fields(auto& codec, Order& order) {
   answer_fields(codec, order.answer);
 }
 
-/// Of kShape and kNext, which some programs do not know.
+/// Fields of kShape and kNext, which some programs do not know.
 constexpr void face_fields(auto& codec, Order& order) {
   codec.require(kKeepsAnswers);
   if (!kKeepsAnswers || order.operation == Operation::kShape) {
@@ -448,7 +448,7 @@ constexpr void last_fields(auto& codec, Report& report) {
   connection_fields(codec, report.direction, report, kLimitBits | kGapOpens | kFacetSlips);
 }
 
-/// Of an equilibrium that begins from what is kept, and of iterations along it.
+/// Fields of an equilibrium that begins from what is kept, and of iterations along it.
 constexpr void deflated_report_fields(auto& codec, Operation operation, Report& report) {
   if (operation == Operation::kResumeDeflated) {
     resumption_fields(codec, report);

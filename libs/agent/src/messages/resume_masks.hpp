@@ -34,7 +34,7 @@ constexpr PlannedMasks repacked(const PlannedMasks& masks, unsigned from, unsign
   return packed;
 }
 
-/// As they go over the wire, and back.
+/// The masks as they go over the wire, and back.
 constexpr PlannedMasks resume_masks(const PlannedMasks& masks, int face_count) {
   return face_count <= kByteFaceCount ? masks : repacked(masks, kWideMaskBits, 8);
 }

@@ -15,7 +15,7 @@ namespace {
 /// One, and another to see that nothing moves any more; many only where planned modules form a
 /// ring.
 constexpr int kPassesMax = 1000;
-/// Of many that are solved for together.
+/// Passes over many that are solved for together.
 constexpr int kGroupPassesMax = 3;
 constexpr double kLeastMove = 1e-14;
 constexpr int kStateRoundsMax = 20;
@@ -225,7 +225,7 @@ void Condensing::shift(Workspace& ws, const Leaves& leaves, std::span<IterationM
   }
 }
 
-/// Its force is how far it moves.
+/// The node's force is how far it moves.
 void Condensing::add_shift(Node& node) {
   for (std::size_t k = 0; k < 6; ++k) {
     node.u[k] += node.force[k];

@@ -20,7 +20,7 @@ bool is_group(const Workspace& ws);
 /// What holds them, and its factors, unless they are here already.
 void factor_group(Workspace& ws);
 
-/// From loads to displacements, both in Node::force.
+/// Solves from loads to displacements, both in Node::force.
 void solve_group(Workspace& ws);
 
 }  // namespace holdfast::agent

@@ -8,7 +8,7 @@
 namespace holdfast::agent {
 namespace {
 
-/// In the fourth real of a node's message: faces that are missing, then these.
+/// Bits in the fourth real of a node's message, above faces that are missing.
 constexpr unsigned kFixedBit = 1U << 6U;
 constexpr unsigned kKeptBit = 1U << 7U;
 constexpr unsigned kHeldBit = 1U << 8U;
@@ -19,7 +19,7 @@ constexpr unsigned kFacetCountShift = 16U;
 constexpr unsigned kFacesMask = kFixedBit - 1;
 constexpr unsigned kFacetCountMask = 15U;
 
-/// In the fifth two contact states.
+/// The fifth real has two contact states.
 constexpr int kCodeBase = mechanics::ContactState::kCodeCount;
 
 /// The states of a facet in use and found, and what else is known of it, in twelve bits.

@@ -309,7 +309,8 @@ bool FrontContact::solve_unilateral() {
   return false;
 }
 
-/// As single precision has it, like the module itself, whose facets are in the same states then.
+/// Takes d as single precision has it, like the module itself, whose facets are in the same states
+/// then.
 void FrontContact::take(const Vector& d, bool follows) {
   for (std::size_t k = 0; k < nodes_.size(); ++k) {
     KeptNode& node = nodes_[k];

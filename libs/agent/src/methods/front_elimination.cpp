@@ -38,7 +38,7 @@ bool holds_all_over(const Node& node) {
                                  : node.is_held && node.state == mechanics::kStuck;
 }
 
-/// Of its pressure a facet loses so much until it counts as one that holds all over in any case. Of
+/// A facet loses so much of its pressure until it counts as one that holds all over in any case. Of
 /// those that are nearer to letting go most do, when others have: kept with the first that do they
 /// save batches of one and two. With 0.5, 0.9, 0.95, 0.98 and all of it, of 1,400 random robots the
 /// worst takes 33, 30, 30, 30 and 458 sweeps, the fronts of the last being too large for modules.
@@ -245,8 +245,9 @@ void FrontElimination::seek(Workspace& ws, const Order& order, Report& sum) {
   }
 }
 
-/// On a level floor the root tries facets where they are: only those that lead elsewhere are worth
-/// an order. Elsewhere a robot may hang on weak springs, and single precision of S does not tell.
+/// The root, on a level floor, tries facets where they are: only those that lead elsewhere are
+/// worth an order. Elsewhere a robot may hang on weak springs, and single precision of S does not
+/// tell.
 void FrontElimination::seek_kept(const Workspace& ws, const Order& order, Report& sum) {
   if ((order.flags & kRemember) != 0) {
     for (KeptNode& node : kept()) {
@@ -639,7 +640,7 @@ void FrontElimination::find_loads(const Workspace& ws) {
 
 // ---- What goes up.
 
-/// As many messages as the link has room for.
+/// Sends as many messages as the link has room for.
 bool FrontElimination::send_up(Workspace& ws) {
   const Direction parent = ws.tree.parent().first();
   bool has_sent = false;
@@ -727,7 +728,7 @@ base::Vec6<float> FrontElimination::shift_of(const base::Cell& cell) const {
   return shift;
 }
 
-/// To every child the shifts of the nodes that it has sent; zeros where there is no answer.
+/// Sends to every child the shifts of the nodes that it has sent; zeros where there is no answer.
 bool FrontElimination::send_shifts(Workspace& ws) {
   int index = index_;
   for (const Direction face : ws.tree.children()) {

@@ -33,7 +33,7 @@ struct Interval {
 /// The lower end of the interval in which the polynomial is good is this over (m + 1)^2.
 constexpr double kIterationSpread = 3;
 
-/// In which a node's diagonal is formed and factored.
+/// How many parts a node's diagonal is formed and factored in.
 constexpr int kDiagonalParts = 4;
 
 void subtract(base::Vec6<double>& from, const base::Vec6<double>& force, double share = 1) {

@@ -18,7 +18,7 @@ using wire::Operation;
 /// if only the root's cluster is smaller.
 constexpr int kClusterReach = 7;
 
-/// In the label of a load: it comes from within a cluster that stands still.
+/// A bit in the label of a load: it comes from within a cluster that stands still.
 constexpr std::uint8_t kHeld = 1;
 
 /// What a module shares of its choice: the cells of its top and of its parent's cluster's top, from

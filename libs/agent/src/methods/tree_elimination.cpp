@@ -40,7 +40,7 @@ Cut cut_at(const Workspace& ws, Direction face) {
 
 Joint joint_to_parent(const Workspace& ws) { return {ws.setup.beams(), ws.tree.parent().first()}; }
 
-/// In a queue that is lent all columns have room at once.
+/// All columns have room at once in a queue that is lent.
 bool has_room(const Links& links, Direction face, int bytes) {
   return kHasAllMethods ? links.has_long_room(face, bytes) : links.has_room(face, bytes);
 }
@@ -228,7 +228,7 @@ void TreeElimination::clear_stiffness_above(const Workspace& ws) {
   }
 }
 
-/// From nothing: tangents, then columns of leaves, come piece by piece.
+/// Begins from nothing: tangents, then columns of leaves, come piece by piece.
 void TreeElimination::factor(Workspace& ws) {
   branch_.clear_stiffness();
   load_ = {};  // Children add theirs as they come.

@@ -224,7 +224,7 @@ Faces SpanningTree::towards_root(const Links& links, const base::Cell& end) cons
   return best;
 }
 
-/// So many hops more to the middle of the way from the sender to the wave's root.
+/// The mark has so many hops more to the middle of the way from the sender to the wave's root.
 void SpanningTree::take_mark(Links& links, const Round& round, const Mark& mark) {
   if (mark.hops == 0 || is_root()) {
     start_wave(links, round, Wave::kTree);

@@ -16,7 +16,7 @@ using wire::PacketKind;
 constexpr std::uint8_t kNumberMask = 0x3f;
 constexpr std::uint16_t kGreetingChecksum = 0xffff;
 constexpr int kGreetingBytes = 6;
-/// In a greeting's last byte: bits of the lattice; above them is the face.
+/// Bits of the lattice in a greeting's last byte; above them is the face.
 constexpr unsigned kLatticeBits = 2;
 
 std::uint8_t header(std::uint8_t top, std::uint8_t number) {
@@ -78,7 +78,7 @@ int Link::capacity() const {
 
 int Link::window() const { return kHasAllMethods && lent_ != nullptr ? kLentWindow : kWindow; }
 
-/// Of the `index`-th packet under way; with a lent queue they stand behind it.
+/// Bytes of the `index`-th packet under way; with a lent queue they stand behind it.
 std::uint8_t& Link::chunk_bytes(int index) {
   return kHasAllMethods && lent_ != nullptr ? lent_[capacity() + index]
                                             : chunk_bytes_[static_cast<std::size_t>(index)];

@@ -34,7 +34,7 @@ constexpr ChecksumTables kChecksumTables = checksum_tables();
 constexpr std::array<std::uint8_t, 21> kMessageBytes = {0,  19, 19, 8,  12, 0,  0,  26, 26, 26, 11,
                                                         26, 26, 26, 26, 26, 35, 13, 26, 26, 26};
 
-/// Those of orders or reports; 0 of what a program has no room for, and so does not know.
+/// Sizes of orders or reports; 0 of what a program has no room for, and so does not know.
 constexpr auto room_for(std::uint8_t OperationInfo::*bytes) {
   auto sizes = column(bytes);
   for (std::uint8_t& size : sizes) {

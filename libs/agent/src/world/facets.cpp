@@ -241,8 +241,9 @@ bool may_slip_at_corners(const Vec6<double>& force, double friction,
 
 }  // namespace
 
-/// In the states in use. As the exact solver asks, the force across is compared with what presses
-/// (verdict/stability.cpp), and, where the rigid body has to hold by friction, corners are.
+/// May a facet slip in the states in use? As the exact solver asks, the force across is compared
+/// with what presses (verdict/stability.cpp), and, where the rigid body has to hold by friction,
+/// corners are.
 bool may_slip(const Node& node, const ContactSetting& contact) {
   const Surroundings* surroundings = surroundings_of(node);
   if (surroundings == nullptr || !node.is_ground) {

@@ -80,7 +80,8 @@ inline base::Vec6<double> facet_force(const Foot& node, const ContactSetting& co
              : mechanics::contact_force(contact.facet, node.state, node.is_held, u);
 }
 
-/// The same for the symmetric stand-in of the tangent (mechanics::symmetric_product).
+/// What facets do to a displacement, by the symmetric stand-in of the tangent
+/// (mechanics::symmetric_product).
 inline base::Vec6<double> symmetric_facet_product(const Node& node, const ContactSetting& contact,
                                                   const base::Vec6<double>& u) {
   const Surroundings* surroundings = surroundings_of(node);
@@ -119,7 +120,7 @@ inline base::Mat6<double> facet_tangent(const Foot& node, const ContactSetting& 
   });
 }
 
-/// Its symmetric stand-in.
+/// The symmetric stand-in of the tangent.
 inline base::Mat6<double> symmetric_facet_tangent(const Node& node, const ContactSetting& contact) {
   const Surroundings* surroundings = surroundings_of(node);
   if (surroundings == nullptr) {
@@ -236,7 +237,7 @@ void seek_facet(Facet& facet, bool is_doubtful, const base::Cell& cell, int inde
   }
 }
 
-/// The same in a kSeek with kOneFoot: each state in which the facet presses has a key.
+/// One facet's part in a kSeek with kOneFoot: each state in which the facet presses has a key.
 template <class Facet>
 void press_alone(Facet& facet, const base::Cell& cell, int index, const Order& order,
                  Report& report) {
@@ -250,7 +251,8 @@ void press_alone(Facet& facet, const base::Cell& cell, int index, const Order& o
   facet.wanted = facet.state;
 }
 
-/// The same in a kSeek with kEachState, of keys that differ in their last four bits by the state.
+/// One facet's part in a kSeek with kEachState, of keys that differ in their last four bits by the
+/// state.
 template <class Facet>
 void take_given_state(Facet& facet, const base::Cell& cell, int index, const Order& order,
                       Report& report) {

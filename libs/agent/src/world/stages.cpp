@@ -378,7 +378,7 @@ int Stages::scene_count(Stage stage) const {
   return count;
 }
 
-/// Which waypoint and which carriers the scene is of.
+/// Finds which waypoint and which carriers the scene is of.
 bool Stages::find_scene(int& waypoint, Choice& choice) const {
   int rest = scene_;
   for (waypoint = 0; waypoint < kWaypointMax; ++waypoint) {
@@ -436,7 +436,7 @@ Cell Stages::doubled_apart(const StepWord& move, int waypoint, const Cell& from)
           2 * (there.z - here.z) + way.z};
 }
 
-/// The same in the global frame, in pitches.
+/// The place seen from there in the global frame, in pitches.
 Stages::Place Stages::place_from(const StepWord& move, int waypoint, const Cell& from) const {
   const Vector doubled = base::place_of(*lattice_, doubled_apart(move, waypoint, from));
   return {doubled[0] / 2, doubled[1] / 2, doubled[2] / 2};
@@ -500,8 +500,9 @@ base::Vec6<double> Stages::hung_load(const Cell& cell, const Setup& setup) const
   return sum;
 }
 
-/// Its pressure on the plane of supports, and its moments about the foot of the module there, as
-/// the module's own load is counted: rounded once more, in the place of a module that is gone.
+/// What hangs there presses on the plane of supports, and has moments about the foot of the module
+/// there, as the module's own load is counted: rounded once more, in the place of a module that is
+/// gone.
 HungMass Stages::hung_on_plane(const Cell& cell, const Setup& setup) const {
   const base::Vec6<double> load = hung_load(cell, setup);
   const auto& [x, y] = setup.plane_axes;
@@ -529,7 +530,7 @@ void Stages::hang(const Cell& cell, const Setup& setup) {
   hung_[2] += is_gone(cell) && environment_ == nullptr ? setup.weight_n : 0;
 }
 
-/// Of the load of a group in the middle of its carrier's facet: tension along the facet's
+/// The load ratio of a group's load in the middle of its carrier's facet: tension along the facet's
 /// direction, and bending about the two axes across it. `held`: the module that the facet holds.
 mechanics::LimitRatio Stages::ratio_through(Direction face, const StepWord& held, int waypoint,
                                             const Cell& cell, const Setup& setup) const {

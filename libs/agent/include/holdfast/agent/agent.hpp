@@ -170,7 +170,7 @@ class Agent {
   /// verdict, and to greet neighbours that are silent?
   bool is_only_watching(Time wake_at) const;
 
-  /// For how long a verdict stands that the root does not say again. W being the time that the
+  /// How long a verdict stands that the root does not say again. W being the time that the
   /// waves of the last round took here: ping_after + lost_after(timing) + 2 W.
   Time watch_time() const { return watch_.verdict_time(clock_.timing); }
 

@@ -61,8 +61,8 @@ struct Absent {
   constexpr Absent& operator|=(const Value& /*lost*/) { return *this; }
 };
 
-/// A member that only some programs have. It takes no room in the others if it is declared
-/// [[no_unique_address]] and is not the last one.
+/// A member that only some programs have. Declared [[no_unique_address]] it takes no room in the
+/// others, but for the second one of a type at the end of a class.
 template <bool kHas, class Value>
 using PresentIf = std::conditional_t<kHas, Value, Absent<Value>>;
 

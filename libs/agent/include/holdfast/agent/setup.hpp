@@ -39,7 +39,7 @@ struct CubeSetup {
   /// Elimination and the polynomial alone, without rigid clusters and without further solutions:
   /// for robots some of whose modules have no other method (features.hpp).
   bool only_one_sweep = false;
-  /// After a verdict the next one begins from what is kept, where only a plan has changed or a
+  /// The next verdict begins from what is kept, where only a plan has changed or a
   /// module has come; else, and without it, from nothing.
   bool keeps_answers = false;
   std::uint32_t iteration_count_max = 4'000'000;
@@ -62,7 +62,7 @@ struct GeneralSetup {
   double ratio_per_n = 0;
   double ratio_per_nmm = 0;
   double ratio_per_energy_root = 0;
-  /// Such a bound makes 2 to the power of this more of the same forces than Eq. (17) would.
+  /// The bounds make 2 to the power of this more of the same forces than Eq. (17) would.
   std::uint8_t slack_bits = 0;
 
   // Derived by prepare().
@@ -71,7 +71,7 @@ struct GeneralSetup {
 
   bool is_cubic() const { return lattice_beam.is_cubic(); }
 
-  /// Null: the beams are those of cubes.
+  /// Is null if the beams are those of cubes.
   const mechanics::LatticeBeam<double>* other_beam() const {
     return is_cubic() ? nullptr : &lattice_beam;
   }
@@ -87,7 +87,7 @@ struct GeneralSetup {
   }
 };
 
-/// The same in programs that know nothing else: cubes on a floor.
+/// What programs know instead that know nothing but cubes on a floor.
 struct FloorSetup {
   static constexpr base::Lattice lattice = base::kCubic;
   static constexpr bool has_plane = false;

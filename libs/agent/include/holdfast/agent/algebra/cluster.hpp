@@ -43,7 +43,7 @@ class Cluster {
   /// The joint as the parent sees it, which is in the same cluster.
   void find_joint_up(const Joint& to_parent, Parts& parts) const;
 
-  /// At the top, when all are added up.
+  /// Called at the top, when all are added up.
   void close_joint();
 
   // ---- Stiffness and load, for every solve anew.

@@ -23,7 +23,7 @@ struct Beams {
       : stiffness(beam), lattice(others) {}
 
   const mechanics::BeamStiffness<Real>& stiffness;
-  /// Null: of cubes.
+  /// Is null for cubes.
   [[no_unique_address]] PresentIf<kIsGeneral, const mechanics::LatticeBeam<Real>*> lattice;
 };
 

@@ -22,7 +22,7 @@ class System {
 
   void factor();
 
-  /// In place.
+  /// Solves in place.
   void solve(base::Vec6<double>& b) const;
 
  private:

@@ -105,7 +105,7 @@ class FeetCheck {
 
   std::int64_t pitch_;      ///< Pitch of cells: its parts times the modules.
   FloorLength half_width_;  ///< Half the width of a facet.
-  /// The same from row to row.
+  /// Pitch from row to row.
   [[no_unique_address]] PresentIf<kIsGeneral, FloorLength> pitch_y_;
   Vector mass_;
 };

@@ -9,7 +9,7 @@
 
 #include "holdfast/base/cell.hpp"
 
-/// Which cells of the robot's box are occupied: one bit each, in parts that fit into a message.
+/// The cells of the robot's box that are occupied: one bit each, in parts that fit into a message.
 namespace holdfast::agent {
 
 class OccupiedCells {
@@ -24,10 +24,10 @@ class OccupiedCells {
   /// An empty box, which fits.
   void begin(const base::Cell& first, const base::Cell& last);
 
-  /// Of a cell in the box.
+  /// Adds a cell in the box.
   void add(const base::Cell& cell);
 
-  /// False outside of the box.
+  /// Is the cell occupied? One outside of the box is not.
   bool has(const base::Cell& cell) const;
 
   bool is_in_box(const base::Cell& cell) const;

@@ -24,7 +24,7 @@ inline constexpr int kSceneMax = 200;
 /// Between the cells of a way and half way between two of them: of a turn; a slide has three.
 inline constexpr int kWaypointMax = 5;
 
-/// In place of a direction: none.
+/// Stands in place of a direction: there is none.
 inline constexpr std::uint8_t kNoDirection = 15;
 
 /// One word of the plan of a step.

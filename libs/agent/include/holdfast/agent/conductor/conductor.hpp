@@ -89,7 +89,8 @@ class Conductor : private ConductorParts {
   Order after_renew(const Setup& setup, const Report& report, const Planned& planned,
                     const Environment* environment = nullptr);
 
-  /// In place of the verdict: the next scene of the stage that is judged, or the next stage.
+  /// Goes out in place of the verdict: the next scene of the stage that is judged, or the next
+  /// stage.
   Order end_scene(const Stages& stages, const Answer& scene);
 
   /// The next order, given what kWord or kStage has brought; kNone if the stage needs a round of
@@ -100,7 +101,7 @@ class Conductor : private ConductorParts {
   /// Modules that the waves of the round have counted.
   std::uint32_t census() const { return whole.census; }
 
-  /// After the report to the kVerdict order.
+  /// Has the report to the kVerdict order come?
   bool is_finished() const { return asked == wire::Operation::kVerdict; }
 
   const Effort& effort() const { return whole.effort; }

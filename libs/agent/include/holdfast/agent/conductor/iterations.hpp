@@ -47,8 +47,8 @@ struct Newton {
   /// States are sought anew: none has been seen.
   void begin(const Whole& whole);
 
-  /// After an iteration: is the next one another of the same linear problem, or are the facets' own
-  /// forces looked up, and, where they are in balance, their states?
+  /// Decides after an iteration: is the next one another of the same linear problem, or are the
+  /// facets' own forces looked up, and, where they are in balance, their states?
   void steer(const Whole& whole, const Accuracy& accuracy, bool kept_states);
 };
 
@@ -126,7 +126,7 @@ class Iterations {
 
   bool deflates(const Whole& whole) const;
 
-  /// In whose place a change is kept.
+  /// The place at which a change is kept.
   std::uint8_t place_of_change();
 
   void begin_deflation(const Report& report);

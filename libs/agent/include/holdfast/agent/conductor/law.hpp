@@ -14,7 +14,7 @@ namespace holdfast::agent {
 /// stiffened where it does not settle.
 class Law {
  public:
-  /// It begins anew; `changes`: of contact states so far.
+  /// Begins anew; `changes`: of contact states so far.
   void begin(bool is_unilateral, std::uint32_t changes);
 
   /// Share of weak springs.
@@ -64,12 +64,12 @@ class Law {
 
   bool is_comparing() const { return is_comparing_; }
 
-  /// Of a verdict that is begun anew.
+  /// Forgets it for a verdict that is begun anew.
   void forget_comparison();
 
   void note_standing(bool is_standing) { is_standing_ = is_standing; }
 
-  /// By the corners that press.
+  /// Does the robot stand, by the corners that press?
   bool is_standing() const { return is_standing_; }
 
   void note_held(std::uint32_t open_count) { open_held_count_ = open_count; }

@@ -50,7 +50,7 @@ class Deflation {
 
   // Iterations, as modules take them.
 
-  /// After an iteration: its residual's W' r completes the products (r, p), (q, p), (q_older, p).
+  /// The W' r of an iteration's residual completes the products (r, p), (q, p), (q_older, p).
   void complete(const Along<float>& residual, std::array<double, 3>& products);
 
   /// The next one is M^-1 r itself: how far it goes along W.
@@ -59,7 +59,7 @@ class Deflation {
   /// Iterations go along nothing, until the next restart().
   void rest() { newer_ = older_ = {}; }
 
-  /// The same of u + a (p - c p_older) + b p_older + M^-1 (r - a q - b q_older).
+  /// How far to go from u + a (p - c p_older) + b p_older + M^-1 (r - a q - b q_older).
   Along<float> minimise(double c, double a, double b);
 
  private:
@@ -92,7 +92,7 @@ class Deflation {
 
 /// What a module keeps, lent (LentMemory).
 struct KeptChanges {
-  /// Those that are kept, and the last one that of the solve that goes on.
+  /// The changes that are kept; the last one is that of the solve that goes on.
   std::array<base::Vec6<float>, wire::kKeptMax + 1> changes{};
   Energies energies{};     ///< This module's part of E.
   bool has_begun = false;  ///< Equilibria have begun: what neighbours say comes too late.

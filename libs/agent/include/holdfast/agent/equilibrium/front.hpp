@@ -103,7 +103,7 @@ class Front {
 
   std::span<const FrontNode> nodes() const { return nodes_; }
 
-  /// Of the i-th node; -1 for a fixed one.
+  /// The first row of the i-th node; -1 for a fixed one.
   int row_of(std::size_t node) const;
 
   /// Rows of complete nodes, and of all.

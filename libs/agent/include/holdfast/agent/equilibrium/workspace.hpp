@@ -37,7 +37,7 @@ struct Workspace {
   /// This module, then those it emulates: indices of nodes run to node_count().
   int node_count() const { return 1 + planned.hosted_count(); }
 
-  /// Null where there are no fronts.
+  /// Is null where there are no fronts.
   FrontMemory* front_memory() const {
     return kHasAllMethods && lent != nullptr ? lent->fronts : nullptr;
   }
@@ -49,7 +49,7 @@ struct Workspace {
     return is_left ? all->connected : all;
   }
 
-  /// Null where steps are not judged in stages.
+  /// Is null where steps are not judged in stages.
   Stages* stages() const { return kKeepsAnswers && lent != nullptr ? lent->stages : nullptr; }
 
   /// The stage of a step that is judged, or kNone.
@@ -70,7 +70,7 @@ struct Workspace {
 
   static bool is_own_node(int index) { return !kIsGeneral || index <= kPlannedMax; }
 
-  /// Of a planned module for which there is no room in the module itself.
+  /// The node of a planned module for which there is no room in the module itself.
   Node& more_node(int index) const {
     return lent->planned->nodes[static_cast<std::size_t>(index - kPlannedMax - 1)];
   }
@@ -82,12 +82,12 @@ struct Workspace {
   /// Faces on which a node has a beam.
   Faces faces_of(int node) const;
 
-  /// Null where free faces are not judged.
+  /// Is null where free faces are not judged.
   FreeFaces* free_faces() const {
     return kKeepsAnswers && lent != nullptr ? lent->free_faces : nullptr;
   }
 
-  /// Null where iterations are not deflated.
+  /// Is null where iterations are not deflated.
   KeptChanges* kept_changes() const {
     return kKeepsAnswers && lent != nullptr ? lent->changes : nullptr;
   }
@@ -123,7 +123,7 @@ struct Workspace {
   /// planned modules emulated here.
   void start_exchange(PlannedPart part);
 
-  /// The same, from nothing.
+  /// Sets across() from nothing to what the beam at a face carries.
   void set_across(Direction face, const base::Vec6<double>& force) {
     if (AcrossLoads* loads = across(); loads != nullptr) {
       (*loads)[static_cast<std::size_t>(face)] = {force[0], force[1], force[5]};

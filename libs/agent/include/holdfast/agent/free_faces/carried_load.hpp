@@ -48,7 +48,7 @@ class CarriedLoad {
 
   const Terms& terms() const { return terms_; }
 
-  /// From a message: the first six terms, and with the other half the last three.
+  /// Takes from a message the first six terms, and with the other half the last three.
   void take_first(const base::Vec6<float>& part);
   void take_last(const base::Vec6<float>& part);
 

@@ -83,7 +83,7 @@ class LoadWay {
   bool is_certain_ = true;
   CarriedLoad alone_;
   CarriedLoad shared_;
-  /// Of the energy: 1, x, y, x^2, x y, y^2, with x and y in mm from the root's centre.
+  /// Terms of the energy: 1, x, y, x^2, x y, y^2, with x and y in mm from the root's centre.
   std::array<double, 6> energy_{};
   bool has_foot_ = false;
   std::array<std::int32_t, 2> foot_{};  ///< Its cell, from the root's.

@@ -28,7 +28,7 @@ namespace holdfast::agent {
 /// `undecided` then until everything is withdrawn.
 inline constexpr int kAnnouncedMax = kPlannedMax;
 
-/// The same of a module that is lent memory for it.
+/// What a module can be told of, at most, that is lent memory for it.
 inline constexpr int kAnnouncedMost = kPlannedMost;
 
 enum class Told : std::uint8_t {
@@ -99,7 +99,7 @@ class Announcements {
   /// Has it been told more than it can keep?
   bool is_overfull() const { return lost_ != Told::kNothing; }
 
-  /// False only of memory that never was one.
+  /// Is false only of memory that never was one.
   bool is_sound() const { return count_ <= kAnnouncedMax && !is_lent_; }
 
   friend bool operator==(const Announcements& one, const Announcements& other);

@@ -20,7 +20,7 @@ namespace holdfast::agent {
 /// those for which it has no room itself, each part under the name that it has for the others.
 /// Messages are the same, but that several `hosts` orders are needed.
 struct MorePlanned {
-  /// Of a system with six unknowns for every planned module.
+  /// Reals of a system with six unknowns for every planned module.
   static constexpr std::size_t kGroupReals = 36UL * kPlannedMost * kPlannedMost;
 
   template <class T>
@@ -45,7 +45,7 @@ struct MorePlanned {
 
   AnnouncedPlaces announced{};  ///< All, in place of what a module has itself.
 
-  /// For the links, in place of theirs: the vectors of an iteration wait in it.
+  /// Queues for the links, in place of theirs: the vectors of an iteration wait in it.
   std::array<std::uint8_t, static_cast<std::size_t>(kFaceCountMax) * Link::kPlannedBytes> queues{};
 
   std::span<double> group;  ///< kGroupReals; not owned.

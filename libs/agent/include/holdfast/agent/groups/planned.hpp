@@ -26,7 +26,7 @@ class Planned {
   /// else.
   void lend(const LentMemory* lent) { lent_ = lent; }
 
-  /// Null: kPlannedMax planned modules at most.
+  /// Is null where there are kPlannedMax planned modules at most.
   MorePlanned* more_planned() const { return lent_ == nullptr ? nullptr : lent_->planned; }
 
   void clear();
@@ -87,7 +87,7 @@ class Planned {
   /// Faces of planned module `index` that touch any module.
   Faces total(int index) const { return is_own(index) ? totals_[at(index)] : more_total(index); }
 
-  /// Of the root: does a group of planned modules touch nothing?
+  /// Does a group of planned modules touch nothing? The root asks.
   bool is_any_detached() const;
 
   /// The face of this module that touches planned module `index`, or none.

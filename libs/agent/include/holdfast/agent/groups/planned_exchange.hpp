@@ -72,7 +72,7 @@ class PlannedExchange {
   /// A force from below has come. True: it was the last that await_forces() was told of.
   bool take_up(const Planned& planned, std::span<const std::uint8_t> message);
 
-  /// So many forces from below have to come before planned modules can be condensed.
+  /// The number of forces from below that have to come before planned modules can be condensed.
   void await_forces(int count) { forces_awaited_ = static_cast<Count>(count); }
 
   bool awaits_forces() const { return forces_awaited_ != 0; }

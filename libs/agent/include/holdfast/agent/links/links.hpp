@@ -28,7 +28,7 @@ class Links {
   /// Lends a module that is no cube the memory for its other faces. Once, before any link is up.
   void lend(MoreFaces* more);
 
-  /// Null: the module is a cube.
+  /// Is null if the module is a cube.
   MoreFaces* more() const { return more_; }
 
   /// All faces of the module.
@@ -37,7 +37,7 @@ class Links {
   /// Faces whose link is used: a neighbour is there and answers, and it is not hidden.
   Faces used() const { return working() - hidden_; }
 
-  /// The same with hidden ones.
+  /// Faces whose link is used, hidden ones with them.
   Faces working() const;
 
   /// Links that have no part in the round, though they work: their connections are off in the stage
@@ -67,7 +67,7 @@ class Links {
   /// Lends every link a longer queue, `face` times Link::kLentBytes from here.
   void lend(std::uint8_t* queues);
 
-  /// The same, for all faces there may be, `face` times Link::kPlannedBytes from here.
+  /// Lends longer ones for all faces there may be, `face` times Link::kPlannedBytes from here.
   void lend_long(std::uint8_t* queues);
 
   /// Has a neighbour fallen silent by what was sent since the last call?
@@ -79,7 +79,7 @@ class Links {
   /// The neighbour at `face` has said what a working one would not: its link is lost.
   void refuse(Direction face) { at(face).lose(); }
 
-  /// After a packet on a link that was used: counts it if it has lost the link, whether by a
+  /// Counts a packet on a link that was used if it has lost the link, whether by a
   /// refused message, by bytes that are none, or by a greeting from another lattice.
   void count_if_lost(Direction face);
 
@@ -110,7 +110,7 @@ class Links {
   /// All deadlines are found anew in finish_step(): whether links are watched has changed.
   void touch_all() { touched_ = all(); }
 
-  /// At the end of a step: finds out which links have a packet to send, and their deadlines.
+  /// Finds out at the end of a step which links have a packet to send, and their deadlines.
   void finish_step(const Clock& clock, bool is_watched);
 
   /// Faces on which a packet waits, as finish_step() has found.
@@ -119,7 +119,7 @@ class Links {
   /// When a link has to be looked after at the latest.
   Time deadline(Faces faces) const;
 
-  /// The same of all links, after every step.
+  /// When any link has to be looked after, as is asked after every step.
   Time deadline() const {
     const Time own = earliest(deadline_);
     const Time lent = more() == nullptr ? kNever : earliest(more()->deadline);

@@ -26,7 +26,7 @@ struct MoreFaces {
   std::array<ByFace<base::Vec6<float>>, 2> vectors{};
   ByFace<std::array<std::uint8_t, wire::kMessageBytesMax>> messages{};
   ByFace<Round> heard{};
-  /// By child, for all faces.
+  /// Faces by child, for all faces.
   std::array<std::array<Faces, kPlannedMax>, kFaceCountMax> below{};
   ByFace<MiddleLoad> middle{};
   ByFace<std::array<Cut, kLoopsMax>> child_cuts{};

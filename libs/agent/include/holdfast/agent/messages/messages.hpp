@@ -57,13 +57,13 @@ struct Appointment {
   std::uint16_t hops = 0;  ///< Half of that module's.
 };
 
-/// On its way to the middle.
+/// A mark on its way to the middle.
 struct Mark {
   std::uint16_t hops = 0;  ///< Still to go.
   base::Cell sender = {};  ///< Cell of the module that sent it first.
 };
 
-/// To a neighbour that has come after a verdict: your place in the tree that stands. What moves it
+/// Tells a neighbour that has come after a verdict its place in the tree that stands. What moves it
 /// follows as six reals, `vector`.
 struct Adoption {
   Round round = {};
@@ -81,13 +81,13 @@ struct News {
   base::Cell cell = {};
 };
 
-/// In the label of `planned down`: the index, and for an iteration which part of a displacement it
-/// is.
+/// Bits in the label of `planned down`: the index, and for an iteration which part of a
+/// displacement it is.
 inline constexpr std::uint8_t kPlannedIndexMask = 0x3f;
 inline constexpr std::uint8_t kLeadingPart = 0x40;
 inline constexpr std::uint8_t kTrailingPart = 0x80;
 
-/// In the label of `reach`: those below are parts of a LoadWay, this is what is outside of a
+/// The last label of `reach`: those below are parts of a LoadWay, this is what is outside of a
 /// subtree.
 inline constexpr std::uint8_t kReachLabelLast = 6;
 

@@ -93,7 +93,7 @@ constexpr bool is_reasoned(const Answer& answer) {
   }
 }
 
-/// In kPlan: no planned module is learned yet.
+/// The index in a kPlan while no planned module is learned yet.
 inline constexpr std::uint8_t kNoPlanned = 0xff;
 
 /// Exchanges that one order may ask for: the degree of a polynomial.
@@ -213,7 +213,8 @@ struct Report {
   [[no_unique_address]] Remarks remarks = {};
   SafeCorners feet = {};
   mechanics::SupportCorners corners = {};
-  /// The same, and kResumeDeflated: products of the residual with the changes that are kept.
+  /// kIterateDeflated, kIterateLast, kResumeDeflated: products of the residual with the changes
+  /// that are kept.
   [[no_unique_address]] PresentIf<kKeepsAnswers, Along<float>> along = {};
   /// kResumeDeflated: w_i' K w_j
   [[no_unique_address]] PresentIf<kKeepsAnswers, Energies> energies = {};
@@ -319,7 +320,8 @@ inline Report decode_report(std::span<const std::uint8_t> message) {
   return report;
 }
 
-/// Of the report of a kIterateLast what that of a kClose would say: corners, the worst connection.
+/// What the report of a kClose would say, from that of a kIterateLast: corners, the worst
+/// connection.
 Report worst_of(const Report& last);
 
 /// The larger number; not a number wins, as it must not get lost.

@@ -32,7 +32,7 @@ class FrontContact {
   /// with these facets say so.
   bool solve();
 
-  /// The same in the states that are given, whether or not the law prescribes them there. False:
+  /// Solves in the states that are given, whether or not the law prescribes them there. False:
   /// nothing holds the robot in them.
   bool solve_given();
 

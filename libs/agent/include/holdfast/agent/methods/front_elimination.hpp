@@ -84,7 +84,7 @@ class FrontElimination {
 
   void begin_piece(Piece piece);
 
-  /// Of a matrix that is sent.
+  /// How many parts a matrix has that is sent.
   int matrix_parts() const { return memory_->has_low_parts ? 2 : 1; }
 
   // What comes from a child.

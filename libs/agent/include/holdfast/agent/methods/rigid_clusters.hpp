@@ -36,7 +36,7 @@ class RigidClusters {
  public:
   bool begin(Workspace& ws, const Order& order, int piece);
 
-  /// Its messages may come as soon as there are clusters anywhere.
+  /// Messages of clusters may come as soon as there are clusters anywhere.
   static bool expects(const Workspace&, const Order&, Direction,
                       std::span<const std::uint8_t> message) {
     return static_cast<wire::MessageType>(message[0]) != wire::MessageType::kLoop;

@@ -177,7 +177,7 @@ class TreeElimination {
   Piece piece_ = Piece::kNone;
   std::uint8_t piece_index_ = 0;
   std::uint8_t down_awaited_ = 0;  ///< Messages that must come from the parent before an iteration.
-  /// Of each planned module here; NodeMatrix has the rest. See stiffness_above().
+  /// Stiffness above each planned module here; NodeMatrix has the rest. See stiffness_above().
   std::array<Above, kPlannedMax> stiffness_above_{};
 };
 

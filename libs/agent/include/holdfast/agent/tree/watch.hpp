@@ -44,7 +44,7 @@ class Watch {
   /// to wait for.
   Time at() const { return at_; }
 
-  /// For how long a verdict stands that the root does not say again.
+  /// How long a verdict stands that the root does not say again.
   Time verdict_time(const LinkTiming& timing) const;
 
   void start(const Clock& clock);

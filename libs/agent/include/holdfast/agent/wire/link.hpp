@@ -20,7 +20,7 @@
 /// data to ride on.
 namespace holdfast::agent {
 
-/// In the port's unit, for instance microseconds; only differences and order matter.
+/// Time in the port's unit, for instance microseconds; only differences and order matter.
 using Time = std::uint64_t;
 
 inline constexpr Time kNever = ~Time{0};
@@ -49,7 +49,8 @@ class Link {
   static constexpr int kLentWindow = 16;
   /// What is lent for a longer queue: a window of the largest packets and more, and their sizes.
   static constexpr int kLentBytes = 4096;
-  /// The same where there may be many planned modules: all vectors of an iteration, and more.
+  /// Bytes of a queue where there may be many planned modules: all vectors of an iteration, and
+  /// more.
   static constexpr int kPlannedBytes = 4096;
 
   /// A neighbour is there. `nonce` should differ each time. 0 and the last one are never used, the
@@ -59,7 +60,7 @@ class Link {
 
   void bring_down();
 
-  /// Which face of the module it is at, as greetings say; before it comes up. +x if nobody says.
+  /// Says before it comes up which face of the module it is at, as greetings do; else it is +x.
   void set_face(base::Direction face) { face_ = face; }
 
   /// Has the neighbour greeted from another face than the one opposite this one? It is turned, or
@@ -70,7 +71,7 @@ class Link {
   /// acknowledges every second packet that is full at once.
   void lend(std::uint8_t* queue) { lent_ = queue; }
 
-  /// The same, kPlannedBytes.
+  /// Lends a queue of kPlannedBytes.
   void lend_long(std::uint8_t* queue) {
     lent_ = queue;
     is_long_ = true;
@@ -91,7 +92,7 @@ class Link {
     return queued_bytes_ + bytes <= (is_long() ? kPlannedBytes - kLentWindow : kQueueBytes);
   }
 
-  /// The same for a long stream, which may use a queue that is lent.
+  /// Can so many bytes of a long stream be queued, which may use a queue that is lent?
   bool has_long_room(int bytes) const { return queued_bytes_ + bytes <= capacity(); }
 
   /// Forgets queued messages of which no byte has been sent.

@@ -19,7 +19,7 @@ struct LentMemory {
   FrontMemory* fronts = nullptr;    ///< Null: no method with fronts.
   FreeFaces* free_faces = nullptr;  ///< Null: free faces are not judged.
   Stages* stages = nullptr;         ///< Null: steps are not judged in stages.
-  /// By node, for all planned ones that there may be; null: there is nothing but a floor.
+  /// One by node, for all planned ones that there may be; null: there is nothing but a floor.
   Surroundings* surroundings = nullptr;
   const Environment* environment = nullptr;  ///< Not null where there are surroundings.
   MoreFaces* faces = nullptr;                ///< Null: the module is a cube.

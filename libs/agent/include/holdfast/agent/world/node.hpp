@@ -26,7 +26,7 @@ struct ContactSetting {
 /// A lower triangle, by rows.
 using Triangle = std::array<float, 21>;
 
-/// In the middle of one connection, local frame: what Eq. (17) needs.
+/// Loads in the middle of one connection, local frame: what Eq. (17) needs.
 struct MiddleLoad {
   double axial_n = 0;
   double bending_x_nmm = 0;

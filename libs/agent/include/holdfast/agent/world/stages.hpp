@@ -48,8 +48,8 @@ class Stages {
  public:
   Stages() = default;
 
-  /// Of modules of a lattice; with `environment`, in which they find what they weigh, null only if
-  /// they are equal cubes on a floor.
+  /// Makes them for modules of a lattice; with `environment`, in which they find what they weigh,
+  /// null only if they are equal cubes on a floor.
   Stages(const base::Lattice& lattice, const Environment* environment)
       : lattice_(&lattice), environment_(environment) {}
 
@@ -83,7 +83,7 @@ class Stages {
 
   const StepWord& word(int index) const { return words_[static_cast<std::size_t>(index)]; }
 
-  /// In reply to the order of word `index`, or of kNoWord: the next one, if it was told here; and
+  /// The reply to the order of word `index`, or of kNoWord: the next one, if it was told here; and
   /// behind the last one whether all that is said of this module fits.
   Report report(std::uint8_t index, const StageSite& site) const;
 
@@ -112,13 +112,13 @@ class Stages {
   /// The verdict on the scene just judged; a stage is as bad as the worst of its scenes.
   void note(Stage stage, const Answer& answer);
 
-  /// Of a stage that has been judged; else kNone.
+  /// The verdict on a stage that has been judged; else kNone.
   const Answer& answer(Stage stage) const { return answers_[at(stage)]; }
 
   /// The first stage that is not safe: overload or unstable before undecided. kNone: all are.
   Stage failing() const;
 
-  /// Of the failing stage; else safe, with the largest load ratio of all.
+  /// The verdict on the failing stage; else safe, with the largest load ratio of all.
   Answer overall() const;
 
   // ---- What the stage makes of the module in a cell.

@@ -39,7 +39,7 @@ struct TouchingFacet {
   bool is_given = false;  ///< The state is the root's, not that of the forces.
 };
 
-/// Of lattices without a direction straight down a floor is touched there as well.
+/// A floor is touched straight down as well in lattices without a direction there.
 inline constexpr std::size_t kTouchingFacetsMax = kFaceCountMax + 1;
 
 struct Environment;
@@ -50,7 +50,7 @@ struct Surroundings {
   base::Vec6<double> load{};  ///< Weight and payload: 3 N, 3 N mm at the node, global frame.
   /// Whole units, see Environment::is_level; with Setup::has_plane what presses on the plane.
   std::int32_t mass = 1;
-  /// With Setup::has_plane: moments of the load besides, in units times parts of a pitch.
+  /// Moments, with Setup::has_plane, of the load besides, in units times parts of a pitch.
   std::array<std::int64_t, 2> moment{};
   std::uint8_t facet_count = 0;
   std::array<TouchingFacet, kTouchingFacetsMax> facets{};
@@ -75,12 +75,12 @@ struct Environment {
   /// All facets look straight down and lie on one level, nothing but weight acts, straight down,
   /// and masses are whole numbers of one unit: so the simplified check is exact.
   bool is_level = false;
-  /// With Setup::has_plane: in which pressure on the plane is counted, and where that is along its
+  /// The unit of pressure on the plane, with Setup::has_plane, and where that is along its
   /// axis out of the robot, in pitches.
   double plane_unit_n = 1;
   double plane_height = 0;
-  /// Of the robot as the step whose stages are judged leaves it. Null: there is no such step, or it
-  /// leaves no robot. Not owned.
+  /// The environment of the robot as the step whose stages are judged leaves it. Null: there is no
+  /// such step, or it leaves no robot. Not owned.
   const Environment* connected = nullptr;
 };
 
