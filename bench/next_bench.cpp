@@ -4,7 +4,7 @@
 //   next_bench [FAMILY SIZE LOAD]...
 // Seconds are those of the processor, on one thread.
 // LOAD: strengths are such that this is the largest load ratio before the next module; 0 leaves
-// them. Without arguments: the families of docs/next.md. Checks are made of every so many
+// them. Without arguments: the families of docs/planning.md. Checks are made of every so many
 // candidates, and what differs from them is counted.
 #include <fmt/format.h>
 

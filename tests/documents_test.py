@@ -21,8 +21,9 @@ import sys
 import tempfile
 
 DOCUMENTS = ['README.md', *(f'docs/{name}.md' for name in (
-    'first_robot', 'first_plan', 'tour', 'theory', 'solver', 'solver_evidence', 'distributed',
-    'one_sweep', 'proof', 'page', 'formats', 'plan', 'move'))]
+    'first_robot', 'first_plan', 'tour', 'theory', 'solver', 'distributed',
+    'proof', 'page', 'formats', 'planning', 'evidence/solver', 'evidence/distributed',
+    'evidence/planning'))]
 # These need the firmware's compilers; tests/firmware checks what they show.
 NOT_RUN = './dev firmware'
 
@@ -132,7 +133,7 @@ def check_tables(repository, costs):
     for name, (rounds, packets, seconds) in costs.items():
         check_row(repository, 'docs/tour.md', rf'^\| {name} \|.*\| ([^|]* / [^|]*) \| yes \|$',
                   f'{rounds} / {seconds}')
-        check_row(repository, 'docs/distributed.md', rf'^\| {name} \|.*\| ([^|]*) \|$',
+        check_row(repository, 'docs/evidence/distributed.md', rf'^\| {name} \|.*\| ([^|]*) \|$',
                   f'{rounds}, {packets}, {seconds}')
 
 

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The holdfast authors
 # SPDX-License-Identifier: Apache-2.0
-"""draw_general.py FOLDER CSV...   the numbers and figures of docs/elastic_and_limit.md and
-docs/supports.md, from what ./dev bench general prints: limit_over_elastic.svg, supports.svg
+"""draw_general.py FOLDER CSV...   the numbers and figures of docs/evidence/elastic_and_limit.md and
+docs/evidence/supports.md, from what ./dev bench general prints: limit_over_elastic.svg,
+supports.svg
 """
 import csv
 import math

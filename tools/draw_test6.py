@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The holdfast authors
 # SPDX-License-Identifier: Apache-2.0
-"""draw_test6.py HOLDFAST FOLDER   the numbers and the figure of docs/test6.md
+"""draw_test6.py HOLDFAST FOLDER   the numbers and the figure of docs/evidence/test6.md
 
 Checks the structures of test #6 of [Piranda 2021] in scenarios/ under many connector laws, prints
 the tables of the note and writes FOLDER/test6.svg.

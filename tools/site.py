@@ -20,13 +20,16 @@ SECTIONS = [
     ('Tutorials', 'From nothing to an answer, step by step.',
      ['first_robot', 'first_plan', 'python_examples', 'tour', 'porting']),
     ('How to', 'One task each.',
-     ['install', 'python', 'page', 'visiblesim', 'firmware', 'cluster', 'supports']),
+     ['install', 'python', 'page', 'visiblesim', 'firmware', 'cluster']),
     ('Reference', 'What there is, complete.',
      ['commands', 'formats', 'robots', 'python_api', 'cpp_api', 'wire', 'building', 'glossary']),
     ('Explanation', 'Why it works.',
-     ['theory', 'general', 'limit', 'elastic_and_limit', 'proof', 'solver', 'plan', 'next', 'order',
-      'move', 'printed_frames', 'distributed', 'one_sweep']),
-    ('Evidence', 'Measurements.', ['solver_evidence', 'test6']),
+     ['theory', 'general', 'limit', 'proof', 'solver', 'planning', 'distributed']),
+    ('Evidence', 'Measurements, each made by a command.',
+     ['evidence/solver', 'evidence/distributed', 'evidence/planning', 'evidence/cluster',
+      'evidence/firmware', 'evidence/visiblesim', 'evidence/page', 'evidence/python',
+      'evidence/general', 'evidence/proof', 'evidence/limit', 'evidence/elastic_and_limit',
+      'evidence/supports', 'evidence/test6', 'evidence/printed_frames']),
 ]
 GENERATED = {'commands', 'python_api', 'cpp_api'}
 
@@ -46,20 +49,23 @@ workstation and inside the robot.
 | writing Python | [Python](python.md), [examples](python_examples.md), [its names](python_api.md) |
 | writing C++ | [install](install.md), [the facade](cpp_api.md) |
 | building a robot | [firmware](firmware.md), [how the robot decides](distributed.md) |
-| reading the paper | [theory](theory.md), [its sixth test, revisited](test6.md) |
+| reading the paper | [theory](theory.md), [its sixth test, revisited](evidence/test6.md) |
 
 '''
 
 
-def without_ways_out(text):
-    """Links out of docs/ become their words, as there is nothing on the site to go to."""
-    return re.sub(r'(?<!!)\[([^\]]+)\]\(\.\./[^)]*\)', r'\1', text)
+def without_ways_out(text, depth):
+    """Links out of docs/ become their words, as there is nothing on the site to go to. The document
+    is `depth` folders below docs/."""
+    up = r'\.\./' * (depth + 1)
+    return re.sub(rf'(?<!!)\[([^\]]+)\]\({up}[^)]*\)', r'\1', text)
 
 
 def lay_documents(docs, folder):
     shutil.copytree(docs, folder, dirs_exist_ok=True, ignore=shutil.ignore_patterns('site'))
-    for document in folder.glob('*.md'):
-        document.write_text(without_ways_out(document.read_text()))
+    for document in folder.rglob('*.md'):
+        depth = len(document.relative_to(folder).parts) - 1
+        document.write_text(without_ways_out(document.read_text(), depth))
 
 
 def commands_of(program):
@@ -105,7 +111,8 @@ def lay_sections(folder):
         index += [f'```{{toctree}}\n:caption: {title}\n:maxdepth: 1\n'] + names + ['```\n']
     (folder / 'index.md').write_text('\n'.join(index))
     listed = [name for _, _, names in SECTIONS for name in names]
-    there = {path.stem for path in folder.glob('*.md')} - {'index'}
+    there = {str(path.relative_to(folder).with_suffix('')) for path in folder.rglob('*.md')}
+    there -= {'index'}
     if sorted(listed) != sorted(there):
         sys.exit(f'site.py: SECTIONS and docs/ differ: {sorted(there ^ set(listed))}')
 

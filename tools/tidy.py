@@ -29,8 +29,6 @@ FOLDER_FILES_MAX = 25
 FRAGMENT = re.compile(r'(After|Also|And|As|At|Before|But|By|False|For|From|In|Its?|None|Null|'
                       r'nullptr|Of|On|So|Such|That|The same|They|Those|To|Towards|Which|Whose?|'
                       r'With|Without)\b')
-FRAGMENT_ROOMS = ('libs/limit/', 'libs/module/', 'libs/plan/', 'libs/solver/',
-                  'extras/emulator/', 'firmware/')  # To be reworded, then taken off.
 FREESTANDING = {'base', 'boards', 'mechanics', 'agent', 'module'}
 APPLICATIONS = ('apps/', 'examples/', 'python/')
 FACADE_HEADERS = {'holdfast', 'distributed', 'emulated', 'exit_code', 'file_ending', 'move',
@@ -151,7 +149,7 @@ def check_comments(name, lines):
     for number, line in enumerate(lines, 1):
         block = re.match(r'\s*///(?!<) ?(.*)', line)
         start = FRAGMENT.match(block[1]) if block and not is_within else None
-        if start and not name.startswith(FRAGMENT_ROOMS):
+        if start:
             fault(name, number, f'expected a sentence with its subject, found "{start[0]} ..."')
         is_within = block is not None
 

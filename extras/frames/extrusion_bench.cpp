@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 // Orders in which printed frames can be built so that no prefix sags by more than 1.5 mm: the
-// problems of assembly_instances (extrusion/*.json), docs/printed_frames.md.
+// problems of assembly_instances (extrusion/*.json), docs/evidence/printed_frames.md.
 //   extrusion_bench FOLDER [SEEDS [SECONDS]]   whole frames, then orders for each seed below SEEDS
 //                                              (1), given up after SECONDS (300) each
 //   extrusion_bench FOLDER verify              orders of seed 0, every prefix solved anew by

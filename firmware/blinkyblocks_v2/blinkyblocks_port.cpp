@@ -24,7 +24,7 @@ using module::Time;
 constexpr int kHeaderBytes = 2;
 constexpr int kMessageBytesMax = 228;
 
-/// By face, +x right, -x left, +y back, -y front, +z top, -z bottom: the library's port.
+/// The library's port by face, +x right, -x left, +y back, -y front, +z top, -z bottom.
 constexpr std::array<std::uint8_t, base::kDirectionCount> kPorts = {2, 3, 4, 0, 5, 1};
 
 int face_of(std::uint8_t port) {
@@ -110,7 +110,8 @@ class BlinkyBlocksPort final : public module::Port {
   /// BBloop() is called again and again.
   void wait(Time) override {}
 
-  /// From the library's handler. When all places are taken the message is dropped; links repeat it.
+  /// Takes a message from the library's handler. When all places are taken it is dropped; links
+  /// repeat it.
   void take(const L3_packet& packet) {
     const int face = face_of(packet.io_port);
     const int size = packet.packet_content[1];

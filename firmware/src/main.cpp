@@ -15,7 +15,7 @@ const holdfast::module::Status* volatile holdfast_status = nullptr;
 [[gnu::section(".keep")]] volatile holdfast::firmware::Stop holdfast_stop;
 volatile holdfast::firmware::Stop holdfast_last_stop;  ///< After a loss of power anything.
 volatile std::uint32_t holdfast_reset_reason;          ///< Port::take_reset_reason()
-/// For those who take the program apart: how much of the memory the agent is.
+/// How much of the memory the agent is, for those who take the program apart.
 extern const std::uint32_t holdfast_agent_bytes;
 [[gnu::section(".facts"), gnu::used]] const std::uint32_t holdfast_agent_bytes =
     sizeof(holdfast::agent::Agent);

@@ -212,7 +212,7 @@ Time Stm32f0Port::now() {
   return Time{time_high} << 32U | low;
 }
 
-/// From the noise of 16 measurements of the temperature.
+/// Mixes the noise of 16 measurements of the temperature.
 std::uint16_t Stm32f0Port::random() {
   constexpr std::uint32_t kStart = 1U << 2U;
   constexpr std::uint32_t kDone = 1U << 2U;

@@ -23,8 +23,8 @@ class Stm32f0Port final : public module::SerialPort {
   /// power, 0x04 pin, 0x02 option bytes. Once after each start.
   static std::uint32_t take_reset_reason();
 
-  /// So many red flashes and a pause, for a program that has stopped. The watchdog ends it, unless
-  /// it is for ever.
+  /// Shows so many red flashes and a pause, for a program that has stopped. The watchdog ends it,
+  /// unless it is for ever.
   static void signal(std::uint32_t count, bool is_for_ever);
 
  private:

@@ -87,7 +87,7 @@ Time Stm32f4Port::now() {
   return Time{before} * 1000 + part;
 }
 
-/// From the time, which QEMU takes from the host's.
+/// Mixes the time, which QEMU takes from the host's, and a count of the calls.
 std::uint16_t Stm32f4Port::random() {
   const std::uint32_t mixed = (++calls_ + systick().CVR) * 0x9e3779b1U;
   return static_cast<std::uint16_t>(mixed >> 16U);
@@ -143,8 +143,8 @@ void Stm32f4Port::sleep(Time until) {
 
 using Handler = void (*)();
 
-/// Behind the first 16 vectors: those of the chip's interrupts (RM0090, table 61). SysTick is the
-/// last of the 16.
+/// The vectors of the chip's interrupts come behind the first 16 (RM0090, table 61), the last of
+/// which is SysTick.
 extern "C" {
 extern const Handler holdfast_tick;
 extern const std::array<Handler, 72> holdfast_interrupts;

@@ -22,7 +22,7 @@ class Stm32f4Port final : public module::SerialPort {
 
   static void signal(std::uint32_t, bool) {}
 
-  /// From the interrupt of a face's USART.
+  /// Takes the byte that has come in; the interrupt of a face's USART calls it.
   void take_byte(int face);
 
  private:

@@ -20,7 +20,7 @@ from ._page import PageNotFound
 from ._pictures import animate, plot_order, plot_steps
 from ._plans import (Moves, Order, Outcome, Places, Stage, Steps, move, next_places, order,
                      steps)
-from ._report import Report, Timings
+from ._report import Remedies, Report, Timings
 from ._robot import Robot, families, generate, load
 from ._verdict import Verdict
 
@@ -29,7 +29,7 @@ Error.__doc__ = 'A robot, a file or an option is not as it may be; one line says
 
 __version__ = _core.version()
 
-__all__ = ['Error', 'Moves', 'Order', 'Outcome', 'PageNotFound', 'Places', 'Report', 'Robot', 'Run',
-           'Stage', 'Steps', 'Timings', 'Verdict', 'animate', 'check_many', 'families', 'generate',
-           'load', 'move', 'next_places', 'order', 'plot_order', 'plot_steps', 'robots', 'steps',
-           'table']
+__all__ = ['Error', 'Moves', 'Order', 'Outcome', 'PageNotFound', 'Places', 'Remedies', 'Report',
+           'Robot', 'Run', 'Stage', 'Steps', 'Timings', 'Verdict', 'animate', 'check_many',
+           'families', 'generate', 'load', 'move', 'next_places', 'order', 'plot_order',
+           'plot_steps', 'robots', 'steps', 'table']

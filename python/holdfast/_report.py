@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._optional import need
+from ._progress import Progress, told
 from ._verdict import VERDICTS, Judged, Verdict
 
 if TYPE_CHECKING:
@@ -33,6 +34,27 @@ class Timings(NamedTuple):
     check: float
     proof: float
     limit: float
+
+
+class Remedies(NamedTuple):
+    """Single changes with which a robot is safe, by kind, each the best first.
+
+    Fields of the tables: ``cell`` (3), ``verdict``, ``load_ratio_max``, ``margin_mm`` with the
+    change.
+    """
+
+    module: Table
+    """One more module in a cell."""
+    prop: Table
+    """An obstacle in a cell, below a module."""
+    fixing: Table
+    """The module in a cell is fixed to the environment."""
+    removal: Table
+    """The module in a cell is taken away."""
+    strength_factor: Optional[float]
+    """With all connections stronger by this factor it is safe; None if that does not do."""
+    tried: dict[str, int]
+    """How many changes of each kind were judged."""
 
 
 class Report(Judged):
@@ -129,6 +151,25 @@ class Report(Judged):
         Fields: ``force_n`` (3), ``moment_nmm`` (3) about the module's centre.
         """
         return self._held.ground_forces
+
+    def remedies(self, *, threads: int = 0, memory: float = 4, bonded: bool = False,
+                 progress: Progress = None) -> Remedies:
+        """What would make the robot hold: single changes, each judged by a check.
+
+        The options are those of the check; `progress` is called with (changes judged, of how many).
+
+        >>> from holdfast import Robot
+        >>> crane = Robot([[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 0, 1]] +
+        ...               [[x, 0, 2] for x in range(6)])
+        >>> crane.check().remedies().module['cell'].tolist()
+        [[2, 0, 1], [1, 0, 1]]
+        """
+        with told(progress, 'remedies', is_counted=True) as tell:
+            found = _core.remedies(self._held, threads, memory, bonded, tell)
+        factor = found.pop('strength_factor')
+        return Remedies(*(found[kind][0] for kind in ('module', 'prop', 'fixing', 'removal')),
+                        strength_factor=factor,
+                        tried={kind: tried for kind, (_, tried) in found.items()})
 
     @property
     def module_load_ratios(self) -> npt.NDArray[np.float64]:

@@ -76,6 +76,32 @@ py::array candidates(const Places& places) {
   return rows_of(rows, true);
 }
 
+/// Returns by kind the changes that do and how many were judged, and the factor of strength.
+py::dict remedies(const SharedCheck& check, const py::handle& threads, const py::handle& memory,
+                  bool is_bonded, py::object progress) {
+  const CheckOptions options = check_options(threads, memory, is_bonded);
+  Watch watch(std::move(progress));
+  const plan::Remedies found = without_gil(watch, [&] {
+    return find_remedies(*check->structure, check->result, options,
+                         [&](std::size_t done, std::size_t count) { watch(done, count); });
+  });
+  py::dict out;
+  for (std::size_t k = 0; k < plan::kRemedyKindCount; ++k) {
+    const plan::RemedyList& list = found.lists[k];
+    std::vector<JudgementRow> rows;
+    for (const plan::Remedy& remedy : list.safe) {
+      JudgementRow& row = rows.emplace_back(row_of(remedy.judgement));
+      row.cell[0] = remedy.cell.x;
+      row.cell[1] = remedy.cell.y;
+      row.cell[2] = remedy.cell.z;
+    }
+    const std::string kind(plan::name(static_cast<plan::RemedyKind>(k)));
+    out[py::str(kind)] = py::make_tuple(rows_of(rows, true), list.tried_count);
+  }
+  out["strength_factor"] = found.strength_factor;
+  return out;
+}
+
 std::shared_ptr<JudgedSteps> steps(const SharedStructure& structure, const py::handle& threads,
                                    const py::handle& memory, bool ends_when_unsafe,
                                    py::object progress) {
@@ -90,9 +116,11 @@ std::shared_ptr<JudgedSteps> steps(const SharedStructure& structure, const py::h
       .memory_bytes_max = check.memory_bytes_max,
       .ends_when_unsafe = ends_when_unsafe,
       .progress = [&](std::size_t judged_count) { watch(judged_count, count); }};
-  auto judged = std::make_shared<JudgedSteps>(
-      StepsFile{.name = structure->name, .document = structure->document, .warnings = {}},
-      StepsResult{});
+  auto judged = std::make_shared<JudgedSteps>(StepsFile{.name = structure->name,
+                                                        .document = structure->document,
+                                                        .warnings = {},
+                                                        .origin = structure->origin},
+                                              StepsResult{});
   judged->result = take(without_gil(watch, [&] { return judge_steps(judged->file, options); }));
   return judged;
 }
@@ -281,6 +309,7 @@ void add_places(py::module_& module) {
         return without_gil([&] { return next_svg(*p.structure, check(*p.structure), p.result); });
       });
   module.def("next", &next);
+  module.def("remedies", &remedies);
 }
 
 void add_steps(py::module_& module) {

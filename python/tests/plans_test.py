@@ -27,6 +27,25 @@ def test_places_have_the_verdicts_of_checks():
     assert places.robot == ARM
 
 
+def test_remedies_are_safe_by_checks_of_the_changed_robot():
+    crane = Robot([[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 0, 1]] + [[x, 0, 2] for x in range(6)])
+    report = crane.check()
+    remedies = report.remedies()
+    cells = [tuple(cell) for cell in crane.cells]
+    for place in remedies.module:
+        assert crane.planning([place['cell']]).check().load_ratio_max == pytest.approx(
+            place['load_ratio_max'], rel=1e-6)
+    for place in remedies.removal:
+        left = Robot([cell for cell in cells if cell != tuple(place['cell'])])
+        assert left.check().load_ratio_max == pytest.approx(place['load_ratio_max'], rel=1e-6)
+    for kind in ('module', 'prop', 'fixing', 'removal'):
+        table = getattr(remedies, kind)
+        assert 0 < len(table) <= remedies.tried[kind]
+        assert (table['load_ratio_max'] < 1).all()
+        assert (np.diff(table['load_ratio_max']) > -1e-6).all()
+    assert report.load_ratio_max <= remedies.strength_factor < report.load_ratio_max + 0.01
+
+
 def test_steps_are_judged_at_every_stage(root):
     tower = Robot([[0, 0, 0], [1, 0, 0]])
     judged = holdfast.steps(tower, [{'attach': [[0, 0, 1]]}, {'attach': [[-1, 0, 1], [-2, 0, 1],

@@ -38,6 +38,17 @@ expect_line out '^3 files: 1 safe, 1 overload, 1 unstable, 0 undecided, 0 not re
 
 # Where the next module may go: 0 if a place is safe, 1 if none is.
 expect_exit 0 next "$safe" --json next.json --svg next.svg --limit 3
+# A bar of five on a post of three breaks and does not topple.
+printf '{"format": "holdfast-structure", "version": 2, "modules": [[0,0,0], [1,0,0], [2,0,0],
+  [0,0,1], [0,0,2], [1,0,2], [2,0,2], [3,0,2], [4,0,2], [5,0,2]]}' >crane.json
+expect_exit 1 check crane.json --remedies
+expect_line out '^  would hold  with one more module at \(2,0,1\): load ratio 0[.]3601; 2 of'
+expect_line out '^              with a prop in \(4,0,1\), below a module: load ratio 0'
+expect_line out '^              with connections 1[.]2[0-9] times as strong$'
+expect_exit 1 check crane.json --remedies --json crane_report.json
+expect_line crane_report.json '"remedies"'
+expect_exit 0 check "$safe" --remedies
+if grep -q 'would hold' out; then fault 'remedies for a structure that is safe'; fi
 expect_line out '^arm_breaks_a: 11 modules, 37 places for the next: 36 safe'
 expect_line next.json '"candidates"'
 expect_line next.svg 'place for the next module'
@@ -269,6 +280,16 @@ expect_exit 0 robots rofi
 expect_line out 'shear_strength_n +50  project page: '
 expect_exit 0 robots --json robots.json
 expect_line robots.json '"certainty": "not found"'
+
+# A report says its robot and what was asked: not what is the default anyway, nor where it goes.
+expect_exit 0 check "$safe" --json head.json -q --set mass_kg=0.05 --set friction=0.4 \
+  --connections all --bonded
+python3 - "$safe" <<'END' || fault "the head of a report: $(head -n 20 head.json)"
+import json, sys
+report = json.load(open('head.json'))
+assert report['robot'] == {'file': sys.argv[1], 'modules': 11}, report['robot']
+assert report['options'] == {'set': ['mass_kg=0.05', 'friction=0.4'], 'bonded': True}, report
+END
 expect_exit 64 robots roffi
 expect_line err 'none of the catalogue'
 expect_exit 0 check --robot rofi "$safe"

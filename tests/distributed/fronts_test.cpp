@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-// Elimination with fronts (docs/one_sweep.md) against the exact solver: any loops, any contact, few
-// sweeps.
+// Elimination with fronts (docs/distributed.md) against the exact solver: any loops, any contact,
+// few sweeps.
 #include <gtest/gtest.h>
 
 #include <tuple>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Robots whose modules have methods of one sweep an iteration only, as firmware has, against the
 // exact solver: what does not settle at once Newton's method by the polynomial decides
-// (docs/one_sweep.md).
+// (docs/distributed.md).
 #include <gtest/gtest.h>
 
 #include "campaign.hpp"

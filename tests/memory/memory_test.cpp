@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 // What large robots take of memory, counted where it is allocated: the same on every machine. The
-// limits are those of docs/solver_evidence.md, where they are measured on larger robots.
+// limits are those of docs/evidence/solver.md, where they are measured on larger robots.
 #include <gtest/gtest.h>
 #include <malloc.h>
 

@@ -123,7 +123,8 @@ verdict::Verdict verdict_of(std::vector<base::Cell> modules, std::vector<base::C
 }
 
 /// Newton's method for the paper's law settles on neither robot, and the exact law holds them. All
-/// their states were tried by a program of its own, tools/contact_states.py (docs/supports.md).
+/// their states were tried by a program of its own, tools/contact_states.py
+/// (docs/evidence/supports.md).
 TEST(RobotsOnWalls, are_not_safe_where_the_papers_law_lets_them_fall) {
   using verdict::Verdict;
   // A foot and a wall beside the middle one: one set of states is consistent, and falls.

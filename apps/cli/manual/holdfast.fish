@@ -18,6 +18,7 @@ complete -c holdfast -n '__fish_seen_subcommand_from check' -l certificate -r -F
 complete -c holdfast -n '__fish_seen_subcommand_from check' -l prove -d 'Prove the largest load ratio; a verdict that is not proved is undecided'
 complete -c holdfast -n '__fish_seen_subcommand_from check' -l limit -d 'Seek the limit load: the largest factor that any forces could balance'
 complete -c holdfast -n '__fish_seen_subcommand_from check' -l limit-seconds -x -d 'Most time for the limit load, s; then the report says what it lies between [default: 600]'
+complete -c holdfast -n '__fish_seen_subcommand_from check' -l remedies -d 'Seek what would make an unsafe structure hold: one more module, a prop, a module fixed or taken away, stronger connections'
 complete -c holdfast -n '__fish_seen_subcommand_from check' -s q -l quiet -d 'Print errors only; the exit code is the answer'
 complete -c holdfast -n '__fish_seen_subcommand_from check' -l bonded -d 'Let the ground hold like a module below would: no lifting, no tilting'
 complete -c holdfast -n '__fish_seen_subcommand_from check' -l threads -x -d 'For large robots; 0: all cores'

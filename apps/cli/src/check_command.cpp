@@ -7,8 +7,10 @@
 
 #include "commands.hpp"
 #include "file_clash.hpp"
+#include "holdfast/trial.hpp"
 #include "page.hpp"
 #include "progress.hpp"
+#include "reading.hpp"
 
 namespace holdfast::cli {
 namespace {
@@ -16,7 +18,7 @@ namespace {
 using verdict::Verdict;
 
 struct CheckArguments {
-  io::ReadOptions reading;
+  Reading reading;
   std::vector<std::string> files;
   std::string json;
   std::string connections = "all";
@@ -29,6 +31,7 @@ struct CheckArguments {
   bool is_bonded = false;
   bool is_proof_wanted = false;
   bool is_limit_wanted = false;
+  bool are_remedies_wanted = false;
   double limit_seconds = limit::LimitOptions{}.seconds_max;
   int thread_count = 0;
   double memory_gb = 4;
@@ -77,18 +80,40 @@ class CheckRun {
       return;
     }
     Structure structure = std::move(loaded).value();
-    if (options_.html.empty()) {  // All else needs the robot only.
+    if (options_.html.empty() && !options_.are_remedies_wanted) {  // All else needs the robot only.
       structure.document.modules = std::vector<io::ModuleEntry>();
     }
-    const CheckResult result = check(structure, check_options(structure, file));
+    const CheckOptions how = check_options(structure, file);
+    const CheckResult result = check(structure, how);
+    const auto remedies = seek_remedies(structure, result, how, file);
     ++counts_[static_cast<std::size_t>(result.assessment.verdict)];
     if (shows_text()) {
       show(structure, result, file);
+      fmt::print("{}", remedies && !is_many() ? remedies_text(*remedies) : "");
     }
     add_report([&](std::ostream& out) {
-      write_report_json(out, structure, result, report_options(options_.json));
+      write_report_json(out, structure, result, report_options(options_.json),
+                        [&](io::JsonStream& json) {
+                          if (remedies) {
+                            write_remedies_member(json, *remedies);
+                          }
+                        });
     });
     write_files(structure, result);
+  }
+
+  std::optional<plan::Remedies> seek_remedies(const Structure& structure, const CheckResult& result,
+                                              const CheckOptions& how, const std::string& file) {
+    const bool is_said = shows_text() || !options_.json.empty();
+    if (!options_.are_remedies_wanted || !is_said || result.assessment.verdict == Verdict::kSafe) {
+      return std::nullopt;
+    }
+    return find_remedies(structure, result, how, [&](std::size_t done, std::size_t count) {
+      progress_.show([&] {
+        return fmt::format("{}: {} of {} judged", io::one_line(file), done,
+                           host::counted(count, "change"));
+      });
+    });
   }
 
   void write_files(const Structure& structure, const CheckResult& result) {
@@ -135,7 +160,7 @@ class CheckRun {
   void report_error(const base::Error& error, const std::string& file) {
     ++bad_count_;
     print_error(error, file);
-    add_report([&](std::ostream& out) { out << error_json(error, file); });
+    add_report([&](std::ostream& out) { out << error_json(error, options_.reading.origin(file)); });
   }
 
   template <class Content>
@@ -295,16 +320,16 @@ Command add_check(CLI::App& app) {
   add_required(*command, "FILE", options->files,
                "Structures: VisibleSim XML, holdfast JSON or binary; - is standard input");
   add_reading(*command, options->reading);
-  const auto add_output = [&](const char* name, std::string& path, const char* help) {
-    command->add_option(name, path, help)->type_name("FILE");
-  };
-  add_output("--json", options->json, "Write the whole report as JSON; - is standard output");
+  add_output(*command, "--json", options->json,
+             "Write the whole report as JSON; - is standard output");
   add_connections(*command, options->connections);
-  add_output("--csv", options->csv, "Write a table, a line for each connection with its loads");
-  add_output("--svg", options->svg, "Draw the structure and its loads");
-  add_output("--vtk", options->vtk, "Write a .vtu file for ParaView");
-  add_output("--html", options->html, "Write a page to look at in a browser, with the report");
-  add_output("--certificate", options->certificate,
+  add_output(*command, "--csv", options->csv,
+             "Write a table, a line for each connection with its loads");
+  add_output(*command, "--svg", options->svg, "Draw the structure and its loads");
+  add_output(*command, "--vtk", options->vtk, "Write a .vtu file for ParaView");
+  add_output(*command, "--html", options->html,
+             "Write a page to look at in a browser, with the report");
+  add_output(*command, "--certificate", options->certificate,
              "Write the proof for holdfast-checker; implies --prove");
   command->add_flag("--prove", options->is_proof_wanted,
                     "Prove the largest load ratio; a verdict that is not proved is undecided");
@@ -315,6 +340,9 @@ Command add_check(CLI::App& app) {
                    "Most time for the limit load, s; then the report says what it lies between")
       ->check(number_between(0.0, 1e6))
       ->capture_default_str();
+  command->add_flag("--remedies", options->are_remedies_wanted,
+                    "Seek what would make an unsafe structure hold: one more module, a prop, a "
+                    "module fixed or taken away, stronger connections");
   add_quiet(*command, options->is_quiet);
   command->add_flag("--bonded", options->is_bonded,
                     "Let the ground hold like a module below would: no lifting, no tilting");
@@ -329,6 +357,7 @@ Command add_check(CLI::App& app) {
           [options] { return run(*options); },
           {.examples = {{"check arm.json", "is it safe, and which connection carries most?"},
                         {"check arm.json --svg arm.svg", "draw the loads"},
+                        {"check arm.json --remedies", "what would make it hold?"},
                         {"check *.json --quiet", "the exit status is the answer"},
                         {"check robot.xml --robot blinky-blocks --json -", "a report to read on"}},
            .notes = "Verdicts: safe, overload (a connection breaks), unstable (the robot "

@@ -19,7 +19,7 @@ after(() => browser.close());
 
 const ROLES = ['existing', 'planned', 'fixed'];
 
-/** A ghost's load ratio is a change of the robot's own (docs/next.md), the click's is found anew. */
+/** A ghost's load ratio is a change of the robot's own (docs/planning.md), the click's is found anew. */
 const GHOST_TIE = 1e-7;
 
 /** For each free place of the robot on the page: what its ghost says and what the click then gives. */

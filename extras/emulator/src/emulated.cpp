@@ -19,7 +19,7 @@ constexpr sim::Time kSlice = 5'000;
 
 double seconds(sim::Time time) { return static_cast<double>(time) * 1e-6; }
 
-/// From the plan, or from the start if there is none, to the last module's verdict.
+/// The time from the plan, or from the start if there is none, to the last module's verdict.
 double seconds_to_verdict(const EmulatedRun& run) {
   const sim::Time end = run.run.result.verdict_time;
   const sim::Time begin = run.firmware.planned_at;

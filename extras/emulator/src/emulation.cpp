@@ -25,12 +25,12 @@ constexpr Time kNoticeTime = 300'000;
 /// A module that faults shows it for 2 s, until its watchdog starts it again.
 constexpr Time kRestartTime = 2'500'000;
 
-/// Ten bits on a line.
+/// The time of a byte, ten bits, on a line.
 constexpr Cycles byte_cycles(std::uint32_t baud) {
   return Cycles{10} * boards::stm32f0::baud_divisor(baud);
 }
 
-/// On the fastest line there is.
+/// A slice is the time of one byte on the fastest line there is.
 constexpr Cycles kSliceCycles = byte_cycles(boards::stm32f0::kBaud);
 
 Cycles cycles(Time time) { return time * kCyclesPerMicrosecond; }
@@ -68,7 +68,7 @@ std::vector<module::Configuration> configurations(const model::Robot& robot,
   return all;
 }
 
-/// What a module is told, as a frame on its line.
+/// The frame by which a module receives an announcement on its line.
 std::vector<std::uint8_t> frame_of(const sim::Announcement& announcement) {
   std::vector<std::uint8_t> payload;
   const base::Cell& cell = announcement.cell;
@@ -163,7 +163,7 @@ std::int32_t EmulatedModules::neighbour(std::int32_t module, int face) const {
   return other < count() ? other : model::Robot::kNoNeighbour;
 }
 
-/// From outside, byte by byte, on a face that is free for good.
+/// Sends all announcements from outside, byte by byte, each on a face that is free for good.
 void EmulatedModules::announce() {
   std::vector<sim::Announcement> all = options_.announcements;
   for (std::size_t i = modules_.size(); options_.tells_planned && i < robot_.modules().size();

@@ -47,7 +47,8 @@ bool lies_in(const std::vector<std::uint8_t>& file, const Elf32_Shdr& section) {
   return section.sh_offset <= file.size() && file.size() - section.sh_offset >= section.sh_size;
 }
 
-/// False if a table of symbols or of their names lies outside the file.
+/// Reads the addresses of all symbols. False if a table of them or of their names lies outside the
+/// file.
 bool take_symbols(const std::vector<std::uint8_t>& file, const Elf32_Ehdr& header, Image& image) {
   for (std::size_t i = 0; i < header.e_shnum; ++i) {
     const auto table = value_at<Elf32_Shdr>(file, header.e_shoff + i * sizeof(Elf32_Shdr));

@@ -53,7 +53,7 @@ class ModuleCpu final : public Watcher {
 
   void reset(std::uint32_t reason = kResetByPin);
 
-  /// Its program jumps to where there is none.
+  /// Lets the program jump to an address without code.
   void crash();
 
   void kill() { is_alive_ = false; }

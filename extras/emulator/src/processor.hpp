@@ -22,7 +22,7 @@ class Peripherals {
   virtual void write(std::uint32_t address, std::uint32_t value) = 0;
 };
 
-/// Is told when the program enters a function, and when it returns from it.
+/// Is called when the program enters a function, and when it returns from it.
 class Watcher {
  public:
   virtual ~Watcher() = default;
@@ -45,7 +45,7 @@ class Processor {
   Processor& operator=(const Processor&) = delete;
   ~Processor();
 
-  /// As the reset pin does: memory stays as it is.
+  /// Starts the program again as the reset pin does: memory stays as it is.
   void reset();
 
   /// Goes on elsewhere, as when an exception is taken.

@@ -366,8 +366,8 @@ void Stm32f091::catch_up() {
   }
 }
 
-/// A USART bears 3.33 % between the two clocks (27.5.5, 8 bits, three samples); a byte beyond is
-/// lost.
+/// A USART tolerates 3.33 % between the two clocks (27.5.5, 8 bits, three samples); a byte beyond
+/// is lost.
 bool Stm32f091::take_byte(int usart, const Arrival& arrival) {
   const std::uint32_t base = kUsarts[at(usart)];
   const Transfer& transfer = receiving_[at(usart)];

@@ -22,7 +22,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::uint32_t kFlash = 0x08000000;
 constexpr std::uint32_t kSegmentBytes = 16;
-/// Of RAM the vectors have the first 192 bytes; data lie behind them.
+/// The vectors have the first 192 bytes of RAM; data lie behind them.
 constexpr std::uint32_t kDataBegin = 0x200000C0;
 
 const std::vector<std::string>& symbol_names() {

@@ -92,7 +92,9 @@ inline constexpr auto kExtensionKeys = std::to_array<std::string_view>(
     {"robot", "lattice", "floor", "gravity_m_s2", "kinds", "obstacles", "loads", "steps"});
 inline constexpr auto kAllTopKeys = joined(kTopKeys, kExtensionKeys);
 inline constexpr auto kOwnParameterKeys = std::to_array<std::string_view>({"kind", "mass_kg"});
-inline constexpr auto kAllModuleKeys = joined(kModuleKeys, kOwnParameterKeys);
+/// The keys of many modules in one entry.
+inline constexpr auto kShapeKeys = std::to_array<std::string_view>({"from", "to", "layers", "at"});
+inline constexpr auto kAllModuleKeys = joined(joined(kModuleKeys, kOwnParameterKeys), kShapeKeys);
 
 /// Parameters of connections that only version 2 has, of the material and of kinds of modules.
 inline constexpr std::string_view kBendingKey = "bending";
@@ -133,7 +135,7 @@ inline constexpr auto kVisibleSimKeys = std::to_array<std::string_view>(
     {"parameters", "world", "block_list", "obstacle_list", "scenery", "targets"});
 inline constexpr auto kPlannedKeys =
     std::to_array<std::string_view>({"cell", "color", "attributes"});
-inline constexpr auto kAllPlannedKeys = joined(kPlannedKeys, kOwnParameterKeys);
+inline constexpr auto kAllPlannedKeys = joined(joined(kPlannedKeys, kOwnParameterKeys), kShapeKeys);
 inline constexpr auto kElementKeys =
     std::to_array<std::string_view>({"element", "attributes", "text", "children"});
 

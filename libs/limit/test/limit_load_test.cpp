@@ -87,7 +87,7 @@ TEST(LimitLoad, LatchesThatShearLimitTheSame) {
   EXPECT_EQ(found.mechanism.yields[0].limit, model::Limit::kShears);
 }
 
-// A magnet that presses with 10 N on a wall and carries one module: it opens by the moment w L / 2,
+// A magnet that is drawn to a wall by 10 N and carries one module: it opens by the moment w L / 2,
 // or slips by w.
 TEST(LimitLoad, AMagnetOnAWallOpensOrSlips) {
   for (const double friction : {0.1, 0.9, 3.0}) {
@@ -123,7 +123,7 @@ TEST(LimitLoad, RoundConnectorsBendAlikeInAllDirections) {
 }
 
 // A bar on three strings of 5 N at -1, 0 and 1 with its load at 1/2: the middle one and the nearer
-// one are full, the other bears what balances.
+// one are full, the other carries what balances.
 TEST(LimitLoad, StringsShareWhatIsBeyondTheFirst) {
   Structure structure = {.bodies = {{.centre_mm = {0.5, 0, 0}, .load = {0, 0, -8, 0, 0, 0}}}};
   for (const double x : {-1.0, 0.0, 1.0}) {

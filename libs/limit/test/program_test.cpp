@@ -79,7 +79,7 @@ TEST(InteriorPoint, shear_and_torsion_have_limits_of_their_own) {
   expect_factor(column(5, law, {0, 0, 0, 0, 0, 2}), 50 / (5 * 2.0));
 }
 
-/// Friction: V <= mu (strength - N), pressed by the weight of what is above.
+/// Friction holds while V <= mu (strength - N); N < 0 is the compression by what is above.
 TEST(InteriorPoint, a_stack_slips_where_friction_ends) {
   const model::ConnectorLaw contact = {.strength_n = 0, .lever_mm = 1e4, .friction = 0.4};
   // Loads grow together, so that a stack holds whatever its weight is, or nothing.

@@ -19,8 +19,8 @@ namespace holdfast::limit {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-/// Of angles and coefficients: they come from products of rounded directions, and from halving to
-/// ten digits.
+/// The accuracy of angles and coefficients: they come from products of rounded directions, and from
+/// halving to ten digits.
 constexpr double kTolerance = 1e-7;
 
 constexpr std::array<Vector3, 3> kUp = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};

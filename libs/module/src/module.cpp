@@ -16,7 +16,7 @@ constexpr std::size_t kWithdrawalBytes = kPlanBytes + 1;
 /// A blinking lamp is dark while this bit of the time is set: on and off take 0.26 s each.
 constexpr Time kBlinkBit = Time{1} << 18U;
 
-/// Of all bytes before the sum, as they lie there.
+/// The checksum of all bytes before it, as they lie in memory.
 std::uint32_t sum_of(const PlanMemory::Copy& copy) {
   constexpr std::uint16_t kStart = 0xffff;
   return agent::wire::checksum(

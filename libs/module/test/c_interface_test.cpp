@@ -17,8 +17,8 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// One cube of 0.6 N on another one that is held, by a connector that bears 10 N: it is pressed,
-/// not pulled, so the robot holds.
+/// One cube of 0.6 N on another one that is held, by a connector of 10 N: it is compressed, not
+/// pulled, so the robot holds.
 Bytes page_of(std::uint32_t id, bool is_held) {
   Configuration configuration;
   configuration.identity = {.id = id, .is_fixed = is_held, .is_anchor = is_held, .cell = {0, 0, 0}};
@@ -215,8 +215,8 @@ TEST(CInterface, a_packet_is_taken_whole_or_not_at_all) {
   EXPECT_EQ(board.verdict(), HF_SAFE);
 }
 
-/// As one that is put together of a counter and its interrupts; 71 minutes ahead would be the
-/// reading of 32 bits, and the end of the verdict.
+/// A clock that is put together of a counter and its interrupts goes back so; 71 minutes ahead
+/// would be the reading of 32 bits, and the end of the verdict.
 TEST(CInterface, a_clock_may_go_back_a_little) {
   Board board(false);
   const Bytes page = page_of(1, true);

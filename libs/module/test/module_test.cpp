@@ -186,7 +186,7 @@ PlanMemory::Copy& latest(PlanMemory& plans) {
   return plans.copies[plans.copies[0].number < plans.copies[1].number ? 1 : 0];
 }
 
-/// Its own cell: the module planned there is there.
+/// The plan is for the module's own cell: the module planned there is there.
 TEST(Module, forgets_a_plan_that_is_fulfilled_and_a_reset_does_not_bring_it_back) {
   PlanMemory plans{};
   Status status = started(plans, {frame_of({0, 0, 0})});

@@ -79,7 +79,7 @@ std::vector<Balance::Point> Balance::hull_without(std::size_t module) const {
   return hull_around(std::move(points));
 }
 
-/// That of one more; the present hull stands for all others.
+/// The hull with one more module; the present hull stands for all others.
 std::vector<Balance::Point> Balance::hull_with(std::size_t module) const {
   std::vector<Point> points = hull_;
   put_corners(module, points);

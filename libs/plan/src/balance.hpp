@@ -16,10 +16,10 @@ namespace holdfast::plan {
 /// within kMarginDoubt of zero decides nothing.
 class Balance {
  public:
-  /// In pitches; sums over a million modules round by less.
+  /// A margin in pitches; sums over a million modules round by less.
   static constexpr double kMarginDoubt = 1e-6;
 
-  /// Of no module of `target` so far, which must be on a flat floor.
+  /// Begins with no module of `target`, which must be on a flat floor.
   explicit Balance(const model::Robot& target);
 
   void add(Element module) { change(module, 1); }

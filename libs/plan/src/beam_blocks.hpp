@@ -51,7 +51,7 @@ class BeamEquations {
   /// Keeps a reference.
   BeamEquations(const BeamBlocks& blocks, std::size_t count) : blocks_(blocks), diagonal_(count) {}
 
-  /// To what stands still if `b` is negative.
+  /// Adds a beam from a to b, or to what stands still if `b` is negative.
   void add_beam(std::int32_t a, std::int32_t b, base::Direction from_a) {
     base::add_to(diagonal_[base::at(a)], blocks_.block_11(from_a));
     if (b >= 0) {
@@ -65,7 +65,7 @@ class BeamEquations {
     base::add_to(diagonal_[a], blocks_.block_11(direction));
   }
 
-  /// None if something hangs free.
+  /// Factors the stiffness; none if something is not supported.
   std::optional<solver::BlockLu> factor() const {
     solver::BlockLu factors(diagonal_.size(), edges_, std::numeric_limits<std::size_t>::max(),
                             solver::Symmetry::kSymmetric);

@@ -9,8 +9,8 @@
 
 namespace holdfast::plan {
 
-/// base::multiply(), to the same bits: a column is three pairs of numbers, and the compiler is told
-/// so, as by itself it takes the numbers one by one, which takes twice as long.
+/// base::multiply(), to the same bits, in half the time: a column is three pairs of numbers, which
+/// the compiler does not see by itself.
 inline base::Vec6<double> block_product(const base::Mat6<double>& matrix,
                                         const base::Vec6<double>& vector) {
   using Pair = double __attribute__((vector_size(16)));

@@ -11,9 +11,9 @@
 
 namespace holdfast::plan {
 
-/// By node: whether the others that hang together with `root` would not without it. By Tarjan's
-/// depth-first search, without recursion. `neighbour(node, i)` is what is beside a node in the i-th
-/// of `degree` places, negative if nothing is.
+/// The cut vertices, by node: those without which the component of `root` falls apart, by
+/// depth-first search without recursion [Tarjan 1972]. `neighbour(node, i)` is what is beside a
+/// node in the i-th of `degree` places, negative if nothing is.
 template <class Neighbour>
 std::vector<bool> cut_vertices(std::size_t count, std::int32_t root, std::size_t degree,
                                const Neighbour& neighbour) {

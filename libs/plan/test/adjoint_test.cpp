@@ -5,7 +5,7 @@
 // solver finds there with all digits, but for the error that is said, though the displacements that
 // it is asked about are off everywhere. The force of a facet far from what comes changes as little
 // as the modules near it say. And a bound that looks at facets so certifies nothing but
-// what that solver finds pressed all over, and more states than without.
+// what that solver finds stuck, and more states than without.
 
 #include "bounds/adjoint.hpp"
 
@@ -58,7 +58,7 @@ bool is_stuck(const verdict::Assessment& assessment) {
       [](const mechanics::ContactState& contact) { return contact == mechanics::kStuck; });
 }
 
-/// By module of the target.
+/// The displacements of a check, by module of the target.
 Displacements exact_displacements(const model::RobotSpec& spec, const ElementSet& state,
                                   const verdict::Assessment& assessment) {
   Displacements u(spec.existing.size());
@@ -111,7 +111,7 @@ std::array<double, 3> facet_force(const model::Robot& target, const model::Facet
   return {force[2], force[3], force[4]};
 }
 
-/// Those of facets of a state that have grown to the modules that come.
+/// The adjoints of facets of a state, grown to the modules that come.
 Adjoints grown_adjoints(const model::RobotSpec& spec, const model::Robot& target,
                         const ElementSet& state, const std::vector<std::size_t>& facets,
                         std::span<const Element> run) {
@@ -246,7 +246,7 @@ TEST(Adjoint, answers_in_states_on_the_way_that_it_has_grown_and_no_others) {
   state.insert(run[12]);
   watched.begin(state.elements(), u);
   EXPECT_FALSE(watched.find(0, u));
-  // It grows that way if it is told to, from its core.
+  // On demand it grows that way, from its core.
   EXPECT_TRUE(adjoints.front()->grow_to(state.elements()));
   watched.begin(state.elements(), u);
   EXPECT_EQ(watched.find(0, u).value().count, 11U);

@@ -54,7 +54,7 @@ void expect_same(const Candidate& fast, const Candidate& full, double tolerance,
   }
 }
 
-/// Of all candidates, or every so many of them.
+/// Compares both ways to judge all candidates, or every so many of them.
 Compared compare(const RobotSpec& spec, const std::string& name, std::size_t stride = 1,
                  CandidateOptions options = {}) {
   std::vector<Cell> cells;
@@ -285,7 +285,7 @@ TEST(Candidates, of_a_turned_robot_are_the_turned_ones) {
   }
 }
 
-// A lattice that leans has no direction straight down, but its floor is as solid.
+// An oblique lattice has no direction straight down, but its floor is as solid.
 TEST(Candidates, are_not_below_the_floor) {
   for (const base::Lattice& lattice : test::kLattices) {
     const std::vector<Cell> row = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};

@@ -66,7 +66,7 @@ void expect_near(const std::vector<Vec6<double>>& a, const std::vector<Vec6<doub
   }
 }
 
-/// Bytes.
+/// Memory for all columns, bytes.
 constexpr std::size_t kEnough = std::size_t{1} << 29U;
 
 std::vector<std::size_t> all_modules(const model::Robot& robot) {
@@ -129,12 +129,12 @@ class Growth {
 
   const ContactStates& states() const { return states_; }
 
-  /// By facet of the grown robot: where its state is.
+  /// Where the state of a facet of the grown robot is.
   std::size_t index_of(std::size_t facet) const { return index_of_[facet]; }
 
   bool has_new() const { return !change_.new_loads.empty(); }
 
-  /// By module of the grown robot.
+  /// Displacements by module of the grown robot.
   std::vector<Vec6<double>> displacements(const Changed& changed) const {
     const auto of_core = [&](std::size_t module) {
       Vec6<double> u = core_.displacement(module);
@@ -310,7 +310,7 @@ TEST(SolvedCore, answers_as_the_equations_do) {
   EXPECT_GT(answer_count, test::campaign(24U));
 }
 
-/// By Newton's method on the whole robot, which then finds no other solutions either.
+/// The solver goes by Newton's method on the whole robot, and then finds no other solutions either.
 TEST(CoreResponse, finds_the_equilibrium_that_a_solver_does) {
   std::size_t found_count = 0;
   std::size_t yielding_count = 0;

@@ -10,7 +10,7 @@
 namespace holdfast::plan {
 namespace {
 
-/// The states of one facet by their codes: what each prescribes; a negative code cannot be told.
+/// The states of one facet by their codes: what each prescribes; a negative code is not certain.
 std::optional<int> end_of_path(const std::vector<int>& prescribed, std::size_t step_max) {
   const auto settled =
       settled_states({mechanics::ContactState::from_code(0)}, step_max,

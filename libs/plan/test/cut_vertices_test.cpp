@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::int32_t kCount = 12;
 
-/// By node, then by the other one: that, or -1 if they are not joined.
+/// graph[a][b] is b, or -1 if a and b are not joined.
 using Graph = std::vector<std::vector<std::int32_t>>;
 
 Graph random_graph(std::uint64_t seed) {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // A robot that follows its core is where a check of the whole, by the direct solver to all digits,
-// finds it, within the error that it says; and so near that this is worth something.
+// finds it, within the error that it says; and near enough to be of use.
 
 #include "bounds/followed_robot.hpp"
 

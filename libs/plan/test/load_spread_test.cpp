@@ -34,7 +34,7 @@ Vec6<double> opposite_of(Vec6<double> vec) {
   return vec;
 }
 
-/// From a module to one that has a facet, each the first neighbour that is nearer.
+/// The way from a module to one that has a facet, always to the neighbour that is nearest to one.
 std::vector<std::size_t> way_from(const model::Robot& robot, std::size_t module) {
   std::vector<std::size_t> rank(robot.modules().size());
   const std::vector<Element> order = test::nearest_first(robot);
@@ -152,7 +152,7 @@ TEST(LoadSpread, balances_loads_at_every_module) {
   EXPECT_GT(cap_count, 20);
 }
 
-/// By statics: each beam of a bent arm bears the weight and its moment.
+/// Each beam of a bent arm carries the weight and its moment.
 TEST(LoadSpread, costs_on_a_single_file_what_statics_says) {
   model::RobotSpec spec;
   for (int z = 0; z < 5; ++z) {
@@ -172,7 +172,7 @@ TEST(LoadSpread, costs_on_a_single_file_what_statics_says) {
   const std::vector<LoadSpread::Load> loads = {{.module = tip, .force = load}};
   const std::vector<std::size_t> way = way_from(robot, tip);
   ASSERT_EQ(way.size(), 7);
-  EXPECT_TRUE(LoadSpread(robot).spread(way, loads, there).empty());  // Not worth while.
+  EXPECT_TRUE(LoadSpread(robot).spread(way, loads, there).empty());  // Does not pay.
   const auto shares = LoadSpread(robot, 1).spread(way, loads, there);
   ASSERT_EQ(shares.size(), 1);
   const auto& [part, u] = shares.front();
@@ -180,7 +180,7 @@ TEST(LoadSpread, costs_on_a_single_file_what_statics_says) {
   const Vec6<double> h = middle_stiffness(beam);
   const double weight = -load[2];
   const double arm = robot.material().pitch_mm;
-  // Two beams bear shear and 1/2, 3/2 of the moment of a pitch; four stand and bear 2 of it.
+  // Two beams carry shear and 1/2, 3/2 of the moment of a pitch; four stand and carry 2 of it.
   double energy = 2 * weight * weight / h[0];
   energy += (0.25 + 2.25) * weight * arm * weight * arm / h[3];
   energy += 4 * (weight * weight / h[2] + 4 * weight * arm * weight * arm / h[3]);

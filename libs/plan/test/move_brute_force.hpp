@@ -15,8 +15,9 @@
 #include "holdfast/model/robot.hpp"
 #include "holdfast/verdict/assessment.hpp"
 
-/// Moves of cubes from the definition alone (docs/plan.md), slowly and without a line of the room
-/// `plan`: every safe shape in a box by breadth-first search, every stage by verdict::assess().
+/// Moves of cubes from the definition alone (docs/planning.md), slowly and without a line of the
+/// room `plan`: every safe shape in a box by breadth-first search, every stage by
+/// verdict::assess().
 namespace holdfast::plan::brute_force {
 
 using base::Cell;
@@ -72,7 +73,7 @@ inline bool is_safe(const World& world, const Cells& cells,
          verdict::assess(robot.value(), {.thread_count = 1}).verdict == verdict::Verdict::kSafe;
 }
 
-/// Whether the connection of a carrier at the origin bears the weight of one module whose centre is
+/// Whether the connection of a carrier at the origin holds the weight of one module whose centre is
 /// at `place`, in pitches, by Eq. (17) at the facet, or facets, nearest to it.
 inline bool bears(const World& world, const Vector3& place) {
   const model::Material& m = world.spec.material;

@@ -25,7 +25,7 @@ std::size_t mask_of(const ElementSet& set) {
 
 class RandomStructure final : public GrowingStructure {
  public:
-  /// Of the states that are not safe so many are undecided, all others overloaded.
+  /// Makes so many of ten unsafe states undecided, all others overloaded.
   RandomStructure(std::uint64_t seed, std::uint64_t safe_of_ten,
                   std::uint64_t undecided_of_ten = 0) {
     base::Rng rng(seed);

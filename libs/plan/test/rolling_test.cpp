@@ -268,7 +268,7 @@ Corners hexagon() {
   return corners;
 }
 
-/// By how much two hexagons overlap, along the one of their normals along which it is least.
+/// The overlap of two hexagons along the one of their normals along which it is least.
 double overlap(const Corners& a, const Corners& b) {
   double least = 1e300;
   for (const Corners& sides : {a, b}) {

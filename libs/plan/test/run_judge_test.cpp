@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // A run is judged as checks of its states, each made by itself, judge them: certified states are
-// safe and bear no more than is said, and the first unsafe one ends the run. Threads change
-// nothing, and a way back is solved state by state.
+// safe and have no larger load ratio than is said, and the first unsafe one ends the run. Threads
+// change nothing, and a way back is solved state by state.
 
 #include "bounds/run_judge.hpp"
 

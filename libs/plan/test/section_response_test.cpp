@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // What is certified above a section of a slender robot is so by a check of each state by itself,
-// by the direct solver to all digits: safe, with no larger load ratio, all facets pressed all over,
-// also where a foot is about to tilt. Displacements are off by no more than is said, and that is
-// worth something: they are not if the core did not move, or not by all of the resultant.
+// by the direct solver to all digits: safe, with no larger load ratio, all facets stuck,
+// also where a foot is about to tilt. Displacements are off by no more than is said, and this
+// can fail: it does if the core does not move, or not by all of the resultant.
 
 #include "bounds/section_response.hpp"
 
@@ -47,7 +47,7 @@ Cells rectangle(int width, int depth) {
   return cells;
 }
 
-/// So many further layers of a cross-section.
+/// The layers of a cross-section from z = `from` on.
 Cells layers(const Cells& section, int from, int count) {
   Cells cells;
   for (int z = from; z < from + count; ++z) {

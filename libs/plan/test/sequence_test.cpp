@@ -156,7 +156,7 @@ model::Step turned(const model::Step& step, const base::Lattice& lattice,
   return other;
 }
 
-/// With connectors that are the same on all sides, and whose bending has no axes of its own.
+/// Makes connectors the same on all sides, and their bending without axes of its own.
 model::RobotSpec with_round_connectors(model::RobotSpec spec) {
   if (spec.kinds.empty()) {
     spec.kinds = {model::default_kind(spec.material, spec.lattice)};

@@ -70,7 +70,7 @@ TEST(Stages, of_a_slide_move_the_load_by_half_cells) {
 }
 
 TEST(Stages, know_what_the_connection_to_the_carrier_bears) {
-  // On top it is pressed, N = -w. Half a cell on, M = 20 w, and M / 20 makes up for N.
+  // On top it is compressed, N = -w. Half a cell on, M = 20 w, and M / 20 makes up for N.
   const auto slide = scenes(beam_with_walker(1), test::move({1, 0, 1}, {2, 0, 1}), Stage::kShift);
   EXPECT_NEAR(slide[0].hangings.front().load_ratio, -kModuleWeight / kVertical, 1e-12);
   EXPECT_NEAR(slide[1].hangings.front().load_ratio, 0, 1e-12);
@@ -137,7 +137,7 @@ TEST(Stages, judge_pieces_by_themselves_if_each_is_held) {
   EXPECT_EQ(shift[0].pieces[1].existing, (std::vector<Cell>{{2, 0, 1}, {2, 0, 0}}));
 }
 
-/// From the carrier's node to the module, in pitches.
+/// The vector from the carrier's node to the module, in pitches.
 std::array<double, 3> arm(const base::Lattice& lattice, const Cell& carrier, const Cell& from,
                           const Cell& to, std::size_t waypoint, bool is_turn) {
   const auto c = base::node_place(lattice, carrier);

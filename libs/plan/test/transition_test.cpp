@@ -104,7 +104,7 @@ TEST(Transition, keeps_what_is_released_until_it_is_connected) {
   EXPECT_TRUE(robot.are_connected(pair[0], pair[1]));
 }
 
-/// Of a robot of four modules, one of them fixed, and an obstacle.
+/// What is wrong with a step of a robot of four modules, one of them fixed, and an obstacle.
 std::string fault_of(const model::Step& step) {
   const RobotState robot(model::RobotSpec{
       .existing = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 0, 1}},
@@ -203,7 +203,7 @@ model::RobotSpec two_about_one() {
           .lattice = base::kFaceCentred};
 }
 
-/// The same step with its moves in both orders, each with a carrier or without.
+/// A step with its moves in both orders, each with a carrier or without.
 std::vector<model::Step> in_both_orders(const std::optional<Cell>& lower,
                                         const std::optional<Cell>& upper) {
   const model::Move a{.from = {1, 0, 2}, .to = {2, 1, 2}, .carrier = lower};

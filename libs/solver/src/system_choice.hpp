@@ -9,8 +9,8 @@
 
 namespace holdfast::solver {
 
-/// Which linear system a robot is solved with: by size and shape, law and memory, and what has
-/// failed so far. One system at a time is kept. Keeps a reference to the robot.
+/// Chooses the linear system that a robot is solved with: by size and shape, law and memory, and
+/// what has failed so far. One system at a time is kept. Keeps a reference to the robot.
 class SystemChoice {
  public:
   SystemChoice(const model::Robot& robot, const EquilibriumOptions& options);

@@ -111,8 +111,8 @@ TEST(BeamShapes, between_moved_ends_modules_lie_where_a_chain_of_beams_has_them)
   }
 }
 
-/// In any direction by vectors, as along the axes by components; and the share is the transpose in
-/// oblique directions, too.
+/// Vectors give in any direction what components give along the axes; and the share is the
+/// transpose in oblique directions, too.
 TEST(BeamShapes, are_the_same_along_any_unit_vector) {
   base::Rng rng(5);
   const BeamShape shape = beam_shape(40, 2, 5);

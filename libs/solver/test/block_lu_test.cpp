@@ -76,7 +76,7 @@ std::vector<Edge> random_graph(base::Rng& rng, std::int32_t node_count, std::uin
   return edges;
 }
 
-/// Every node but the first hangs on a random earlier one.
+/// Every node but the first is joined to a random earlier one.
 std::vector<Edge> random_tree(base::Rng& rng, std::int32_t node_count) {
   std::vector<Edge> edges;
   for (std::int32_t node = 1; node < node_count; ++node) {
@@ -223,7 +223,7 @@ TEST(BlockLu, makes_again_what_a_changed_edge_touches) {
   }
 }
 
-/// Of two pairs, a change in one leaves the other as it is.
+/// A change in one of two pairs leaves the other as it is.
 TEST(BlockLu, counts_the_columns_that_it_makes) {
   base::Rng rng(11);
   System system(4, {{0, 1}, {2, 3}}, rng);
@@ -237,7 +237,7 @@ TEST(BlockLu, counts_the_columns_that_it_makes) {
   EXPECT_LE(system.lu().made_column_count(), 6U);
 }
 
-/// The same operations in the same order, so the same bits as a factorization from scratch.
+/// The bits are those of a factorization from scratch: the operations and their order are the same.
 TEST(BlockLu, refactors_to_the_bits_of_a_fresh_factorization) {
   const auto edges = lattice(4, 3, 2);
   const auto make = [&] {
@@ -290,7 +290,7 @@ TEST(BlockLu, says_when_it_would_become_too_large) {
   EXPECT_FALSE(BlockLu(2, {}, 0).is_too_large());
 }
 
-/// In whole numbers: [[1, -1], [-1, 1]] loses its second pivot exactly.
+/// [[1, -1], [-1, 1]], in whole numbers, loses its second pivot exactly.
 TEST(BlockLu, recognises_a_singular_matrix_and_recovers_from_it) {
   BlockLu lu(2, std::vector<Edge>{{0, 1}}, kUnlimited);
   lu.set_edge(0, scaled_identity(-1));
@@ -342,8 +342,8 @@ BlockLu symmetric_lattice(base::Rng& rng, std::size_t node_count, std::span<cons
   return lu;
 }
 
-/// Against factors that never were symmetric: where nothing changed, with changes that are not yet
-/// factorized, and with unsymmetric blocks from then on.
+/// The results are those of factors that never were symmetric: where nothing changed, with changes
+/// that are not yet factorized, and with unsymmetric blocks from then on.
 TEST(BlockLu, gives_up_symmetry_and_takes_it_up_again) {
   const std::vector<Edge> edges = lattice(4, 3, 3);
   for (const bool is_changed_before : {false, true}) {
@@ -411,7 +411,7 @@ TEST(BlockLu, solves_lanes_to_the_bits_of_one_after_another) {
   }
 }
 
-/// Against solutions for unit vectors.
+/// The blocks are parts of the solutions for unit vectors.
 TEST(BlockLu, gives_blocks_of_the_inverse_of_a_symmetric_matrix) {
   base::Rng rng(6);
   const std::vector<Edge> edges = lattice(3, 3, 3);
@@ -487,7 +487,7 @@ TEST(BlockLu, says_on_several_threads_that_a_matrix_is_singular) {
   EXPECT_FALSE(lu.factor(3));
 }
 
-/// The same numbers by another order of the same sums.
+/// The numbers are the same by another order of the same sums.
 TEST(BlockLu, factors_what_is_known_to_be_symmetric_alike) {
   base::Rng rng(6);
   base::Rng same(6);
@@ -580,7 +580,7 @@ TEST(PositiveBlockLu, has_the_same_bits_on_all_threads) {
   EXPECT_EQ(matrix.solved(b, Symmetry::kPositive, 1), matrix.solved(b, Symmetry::kPositive, 3));
 }
 
-/// Nodes that hang together and on nothing: forces that are in balance are solved all the same.
+/// Connected nodes without a support: forces that are in balance are solved all the same.
 TEST(PositiveBlockLu, takes_pivots_that_are_rounding_for_rounding) {
   constexpr std::int32_t kCount = 30;
   PositiveMatrix matrix(lattice(kCount, 1, 1), kCount, Eigen::VectorXd::Ones(6 * kCount));

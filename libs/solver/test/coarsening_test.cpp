@@ -181,7 +181,7 @@ TEST(ReducedNetwork, a_solid_cube_has_every_module_beam_and_foot) {
   }
 }
 
-/// An arm is a foot of six and one row, which hangs on it.
+/// An arm is a foot of six and one row, which is joined to it at one end.
 TEST(ReducedNetwork, an_arm_of_any_length_leaves_its_foot) {
   for (const std::size_t n : {20U, 2000U}) {
     const model::Robot robot = robot_of(model::Family::kArm, n);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The contact iteration on an interface alone: a system that solves exactly, says that it does not,
 // and remembers what it was asked for. States beside the energy that they belong to; tolerances
-// beside their rules; the journal beside what it was told.
+// beside their rules; the journal beside what was written.
 #include "../src/contact/contact_iteration.hpp"
 
 #include <gtest/gtest.h>
@@ -124,7 +124,7 @@ TEST(RegularisedContact, seeks_states_loosely_and_ends_tightly) {
   EXPECT_NEAR(system.tolerances.back(), 1e-4, 1e-10);
 }
 
-/// As long as an error could decide a state, the step goes on, a factor of ten at a time.
+/// The step goes on, a factor of ten at a time, as long as an error could decide a state.
 TEST(RegularisedContact, goes_on_until_states_are_certain) {
   const model::Robot robot = table(kLifting);
   Recorder system(robot);

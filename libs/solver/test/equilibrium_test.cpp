@@ -180,7 +180,7 @@ TEST(Equilibrium, of_an_arm_on_one_foot_presses_what_the_weight_lies_over) {
         const double torque = weight * 40 * reach * (reach + 1) / 2;
         const Vec6<double> expected = {0, 0, (reach + 2) * weight, q.y * torque, -q.x * torque, 0};
         for (std::size_t i = 0; i < 6; ++i) {
-          // A robot that tips hangs on springs of 1e-4: as many digits are lost.
+          // Springs of 1e-4 hold a robot that tips: as many digits are lost.
           EXPECT_NEAR(ground_forces(robot, result)[0][i], expected[i],
                       1e4 * kEquilibriumTolerance * torque);
         }

@@ -28,7 +28,7 @@ constexpr double kDirectTolerance = 1e-9;
 constexpr double kAskedTolerance = 1e-9;
 constexpr double kMultigridTolerance = 1e-6;
 
-/// A table of two feet with an arm that hangs out and one module fixed to something: 14 modules.
+/// A table of two feet with an arm that juts out and one module fixed to something: 14 modules.
 model::Robot table() {
   return model::Robot::create({.existing = {{0, 0, 0},
                                             {0, 0, 1},
@@ -199,7 +199,7 @@ TEST(LinearSystem, goes_on_from_loads_that_change_to_the_solution_of_the_last) {
   }
 }
 
-/// By its steps alone, each of which leaves less than a third of what is missing.
+/// The steps alone approach it: each of them leaves less than a third of what is missing.
 TEST(LinearSystem, approaches_the_solution_step_by_step) {
   const model::Robot robot =
       model::Robot::create({.existing = model::family_cells(model::Family::kCube, 7)}).value();

@@ -77,7 +77,7 @@ TEST(Multigrid, agrees_with_the_direct_solver_on_all_families_with_bonded_suppor
   }
 }
 
-/// In solids of more than 16,384 cubes K p is made twice and not kept. For these the direct solver
+/// K p is made twice and not kept in solids of more than 16,384 cubes. For these the direct solver
 /// takes long; in double precision, where K p is made in another way, the answer is the same.
 TEST(Multigrid, agrees_with_double_precision_where_products_are_not_kept) {
   const model::Robot robot = family(Family::kCube, 26);
@@ -94,7 +94,7 @@ TEST(Multigrid, agrees_with_double_precision_where_products_are_not_kept) {
             kRatioTolerance);
 }
 
-/// Nor is it in double precision, whether K is symmetric or not: a portal's feet tilt.
+/// K p is not kept in double precision either, whether K is symmetric or not: a portal's feet tilt.
 TEST(Multigrid, agrees_with_the_direct_solver_where_products_are_not_kept) {
   const model::Robot portal = family(Family::kPortal, 560);
   const model::Robot tower = family(Family::kTower, 2000);
@@ -144,7 +144,7 @@ TEST(Multigrid, knows_fixed_modules_and_unequal_moments_of_the_section) {
   expect_agreement(model::Robot::create(spec).value(), {}, false);
 }
 
-/// A straight run, bent runs, a tree, and a whole robot that hangs on one fixed module: everything
+/// A straight run, bent runs, a tree, and a whole robot that one fixed module holds: everything
 /// is eliminated by hand, so the answer is exact. Tolerance: rounding, as an arm of 50 has a
 /// condition number of some millions.
 TEST(Multigrid, solves_what_hangs_exactly) {
@@ -545,7 +545,7 @@ TEST(EquilibriumSolver, finds_digits_where_a_factorization_has_lost_them_all) {
   EXPECT_NEAR(end_tension_n(longest, found), tension, 1e-4 * tension);
 }
 
-/// Without weak springs an open facet resists nothing. Where the robot stands on its other feet
+/// An open facet resists nothing without weak springs. Where the robot stands on its other feet
 /// that is no harm, and the answer is what ever weaker springs lead to: 1e-9 of them change no load
 /// ratio by more than multigrid may.
 TEST(Multigrid, does_without_weak_springs_where_the_robot_stands_without_them) {
@@ -563,7 +563,7 @@ TEST(Multigrid, does_without_weak_springs_where_the_robot_stands_without_them) {
   }
 }
 
-/// A robot that topples has nothing else to hang on: it must end, and say so.
+/// A robot that topples has nothing else to hold it: it must end, and say so.
 TEST(Multigrid, ends_where_a_toppling_robot_has_no_weak_springs) {
   for (const auto& [name, size] : {std::pair{Family::kArm, 300}, std::pair{Family::kBridge, 30}}) {
     const model::Robot robot = family(name, static_cast<std::size_t>(size));

@@ -93,8 +93,8 @@ TEST(Springs, a_beams_spring_couples_its_ends_as_k12_does) {
   }
 }
 
-/// At its middle a beam of length L gives by L/EA along it, L/GJ about it, L/EI about the axes
-/// across, and by L^3/12EI across: all four are independent there. Lengthened from L to R its
+/// The compliance of a beam of length L at its middle is L/EA along it, L/GJ about it, L/EI about
+/// the axes across, and L^3/12EI across: all four are independent there. Lengthened from L to R its
 /// compliance is that of a beam of length R, but that of the bending that shifts the middle,
 /// (R^2 - L^2)/12 of the rotation, only kBendShare is taken, and all is divided by kCorrection.
 TEST(Springs, a_stretched_beam_gives_as_beam_theory_says) {
@@ -136,7 +136,7 @@ TEST(Springs, a_stretched_beam_gives_as_beam_theory_says) {
   }
 }
 
-/// The same, whatever the direction: what does not depend on the frame, the traces of the
+/// A beam's direction makes no difference: what does not depend on the frame, the traces of the
 /// compliance's quarters and what it gives along and about the beam, is that of a cube's beam of
 /// equal stiffness both ways.
 TEST(Springs, a_beam_stretches_alike_in_every_direction_of_every_lattice) {
@@ -196,7 +196,7 @@ TEST(WeakSprings, a_spring_is_weak_below_a_share_of_what_holds_its_nodes) {
   EXPECT_EQ(weak, (std::vector<std::uint8_t>{0, 0, 1, 1, 0, 0}));
 }
 
-/// A body that hangs on one spring alone is held by nothing else, so that spring is not weak there,
+/// A body on one spring alone is held by nothing else, so that spring is not weak there,
 /// however weak it is at the other end.
 TEST(WeakSprings, what_hangs_on_one_spring_alone_joins_it) {
   SpringGraph graph = chain(1);
@@ -294,7 +294,7 @@ SpringGraph half_chain(const SpringGraph& whole, OneOfTwo& ranks) {
 }
 
 /// What two ranks find of the halves of a chain, in the order of the whole one's edges. The first
-/// is asked again when the second has told it what it finds.
+/// is asked again when the second has sent it what it finds.
 std::vector<std::uint8_t> weak_in_halves(const SpringGraph& whole) {
   host::Team team(1);
   OneOfTwo first(0);

@@ -14,8 +14,9 @@
 
 #include "holdfast/holdfast.hpp"               // IWYU pragma: export
 #include "holdfast/limit/rigid_stability.hpp"  // IWYU pragma: export
+#include "holdfast/plan/remedies.hpp"          // IWYU pragma: export
 
-/// The facade's trials: where may the next module go?
+/// The facade's trials: where may the next module go, and what would make a structure hold?
 ///
 ///     const holdfast::NextResult next = holdfast::find_next(structure);
 ///     if (next.count(holdfast::verdict::Verdict::kSafe) > 0) { ... next.candidates[0].cell ... }
@@ -26,6 +27,11 @@
 ///     for (const holdfast::Trial& trial : holdfast::try_cells(spec, holdfast::free_cells(spec))) {
 ///       if (trial.is_robot && trial.verdict == holdfast::verdict::Verdict::kSafe) { ... }
 ///     }
+///
+/// Changes of a structure that does not hold:
+///
+///     const auto remedies = holdfast::find_remedies(structure, holdfast::check(structure));
+///     ... remedies.of(holdfast::plan::RemedyKind::kProp).safe.front().cell ...
 namespace holdfast {
 
 /// The role that a module gets that is added to a robot.
@@ -121,5 +127,17 @@ std::string next_text(const Structure& structure, const NextResult& result,
 /// The structure as picture_svg() draws it, with a ghost in every place, in its verdict's colour.
 std::string next_svg(const Structure& structure, const CheckResult& checked,
                      const NextResult& result, const NextReportOptions& options = {});
+
+/// Tries single changes of a structure with its planned modules attached; `result` is that of its
+/// check with the same options. Progress is called with how many changes are judged, of how many.
+plan::Remedies find_remedies(
+    const Structure& structure, const CheckResult& result, const CheckOptions& options = {},
+    const std::function<void(std::size_t done, std::size_t count)>& progress = {});
+
+/// Lines for the end of report_text().
+std::string remedies_text(const plan::Remedies& remedies);
+
+/// Writes the key "remedies" into the report's object, which is open; docs/formats.md.
+void write_remedies_member(io::JsonStream& json, const plan::Remedies& remedies);
 
 }  // namespace holdfast

@@ -12,6 +12,7 @@
 #include "holdfast/io/lattice_names.hpp"
 #include "json/json_connectors.hpp"
 #include "json/json_extension.hpp"
+#include "json/json_shapes.hpp"
 #include "json/json_values.hpp"
 #include "text_input.hpp"
 #include "vocabulary.hpp"
@@ -40,7 +41,11 @@ class JsonReader {
   template <class Entry>
   std::vector<Entry> entries(const Json& value, const JsonPlace& place, std::size_t step);
   template <class Entry>
-  Entry entry(const Json& value, const JsonPlace& place, OwnParameters own);
+  void add_shape(const Json& value, const JsonPlace& place, std::size_t step,
+                 std::vector<Entry>& list);
+  template <class Entry>
+  Entry entry(const Json& value, const JsonPlace& place, OwnParameters& own);
+  void keep(const OwnParameters& own);
 
   Names entry_keys(bool is_module) const;
 
@@ -312,23 +317,58 @@ std::vector<Entry> JsonReader::entries(const Json& value, const JsonPlace& place
     list.reserve(array.size());
     for (std::size_t i = 0; i < array.size() && !reading_.has_failed(); ++i) {
       host::ask_whether_to_go_on();
-      list.push_back(entry<Entry>(array[i], place.at(i), {step, i, {}, {}}));
+      if (is_shape(array[i])) {
+        add_shape(array[i], place.at(i), step, list);
+        continue;
+      }
+      OwnParameters own{step, list.size(), {}, {}};
+      list.push_back(entry<Entry>(array[i], place.at(i), own));
+      keep(own);
     }
   }
   return list;
 }
 
-/// Reads a module; `own` says which one it is, and is kept if the module has parameters of its own.
+/// Reads many modules that are alike but for their cells.
 template <class Entry>
-Entry JsonReader::entry(const Json& value, const JsonPlace& place, OwnParameters own) {
+void JsonReader::add_shape(const Json& value, const JsonPlace& place, std::size_t step,
+                           std::vector<Entry>& list) {
+  OwnParameters own{step, 0, {}, {}};
+  Entry one = entry<Entry>(value, place, own);
+  if (reading_.has_failed()) {
+    return;
+  }
+  for (const base::Cell& cell : shape_cells(reading_, value, place)) {
+    own.module = list.size();
+    one.cell = cell;
+    list.push_back(one);
+    keep(own);
+  }
+}
+
+/// Keeps what a module has of its own, if it has anything.
+void JsonReader::keep(const OwnParameters& own) {
+  if (!own.kind.empty() || own.mass_kg) {
+    reading_.document.extension.own.push_back(own);
+  }
+}
+
+/// Reads a module, or what the modules of a shape have in common; `own` gets what it has of its
+/// own.
+template <class Entry>
+Entry JsonReader::entry(const Json& value, const JsonPlace& place, OwnParameters& own) {
   constexpr bool kIsModule = std::is_same_v<Entry, ModuleEntry>;
   Entry entry;
   if (value.is_array()) {
     entry.cell = reading_.cell(value, place);
     return entry;
   }
-  if (!value.contains("cell")) {
-    reading_.refuse(value, place, "a cell [x, y, z] or an object with the key \"cell\"");
+  const bool is_many = is_shape(value);
+  if (!is_many && !value.contains("cell")) {
+    reading_.refuse(value, place,
+                    is_extended_ ? "a cell [x, y, z] or an object with \"cell\", with \"from\" and "
+                                   "\"to\", or with \"layers\""
+                                 : "a cell [x, y, z] or an object with the key \"cell\"");
     return entry;
   }
   for (const auto& [key, member] : reading_.members(value, place)) {
@@ -341,6 +381,12 @@ Entry JsonReader::entry(const Json& value, const JsonPlace& place, OwnParameters
     }
     if (key == "cell") {
       entry.cell = reading_.cell(member, here);
+    } else if (std::ranges::find(kShapeKeys, key) != kShapeKeys.end()) {
+      if (allows(here) && !is_many) {
+        reading_.fail(here, "a module with \"cell\" is one module, this key is of many");
+      }
+    } else if (is_many && key == "attributes") {
+      reading_.fail(here, "attributes are of one module, with \"cell\"");
     } else if (key == "color") {
       entry.color = reading_.color(member, here);
     } else if (key == "attributes") {
@@ -358,9 +404,6 @@ Entry JsonReader::entry(const Json& value, const JsonPlace& place, OwnParameters
     } else {
       reading_.note_unknown_key(here, entry_keys(kIsModule));
     }
-  }
-  if (!own.kind.empty() || own.mass_kg) {
-    reading_.document.extension.own.push_back(std::move(own));
   }
   return entry;
 }

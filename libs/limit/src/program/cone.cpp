@@ -91,7 +91,7 @@ ConePart Scaling::inverse_times(const ConePart& u) const {
   return is_number(u) ? ConePart(u / eta_) : ConePart(hyperbolic(w_, -1, u) / eta_);
 }
 
-/// From the eigenvectors of W^-1: (1, -n), (1, n) and across, with n along w.
+/// The rows of R are along the eigenvectors of W^-1: (1, -n), (1, n) and across, with n along w.
 ConeRows Scaling::root_times(const ConeRows& G) const {
   if (G.rows() == 1) {
     return G / eta_;

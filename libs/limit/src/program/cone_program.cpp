@@ -130,7 +130,7 @@ class JointRows {
   Eigen::Array<bool, 6, 1> carries_;
 };
 
-/// By component of a joint's force: its wrench about a place, times `sign`.
+/// The columns are by component of a joint's force: its wrench about a place, times `sign`.
 Block wrenches(const Joint& joint, const JointRows& rows, const Vector3& about, double length,
                double sign) {
   Block result = Block::Zero();

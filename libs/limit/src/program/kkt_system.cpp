@@ -17,7 +17,7 @@ using JointPart = ConeProgram::JointPart;
 
 /// The stiffness that every motion is given, in units of the program.
 constexpr double kLeastStiffness = 1e-12;
-/// Of the row of the factor's bound, so that it is about as long as others.
+/// Scales the row of the factor's bound to about the length of the others.
 constexpr double kBoundScale = 1 / kFactorMax;
 
 /// Pairs of groups that joints couple, and which of them each joint is in.
@@ -181,8 +181,8 @@ void KktSystem::solve_stiffness(VectorXd& x) {
   }
 }
 
-/// Of every joint: R with R'R the inverse of G' W^-2 G, by the rotations of a matrix whose rows are
-/// of very different lengths, the longest first. Directions without limit are given a stiffness
+/// Finds every joint's R with R'R the inverse of G' W^-2 G, by the rotations of a matrix whose rows
+/// are of very different lengths, the longest first. Directions without limit are given a stiffness
 /// that later steps of the refinement take back.
 void KktSystem::make_compliances() {
   using Stack = Eigen::Matrix<double, Eigen::Dynamic, 6, 0, 21, 6>;

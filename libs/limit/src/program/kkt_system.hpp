@@ -42,7 +42,8 @@ class KktSystem {
   Eigen::VectorXd transposed_times(const Eigen::VectorXd& y,
                                    const Eigen::VectorXd& z) const;  ///< A'y + G'z
 
-  /// False: rounding has left the cones.
+  /// Factors the matrix for the scaling of s and z. False: rounding has left the cones, or the
+  /// stiffness is singular.
   bool factor(const Eigen::VectorXd& s, const Eigen::VectorXd& z);
   KktVector solve(const KktVector& right_side);
 
@@ -50,7 +51,7 @@ class KktSystem {
   Eigen::VectorXd scaled(const Eigen::VectorXd& u) const;          ///< W u
   Eigen::VectorXd inverse_scaled(const Eigen::VectorXd& u) const;  ///< W^-1 u
   Eigen::VectorXd product(const Eigen::VectorXd& u, const Eigen::VectorXd& v) const;
-  /// By lambda = W z.
+  /// What times lambda = W z is v, in the cones' Jordan algebra.
   Eigen::VectorXd quotient(const Eigen::VectorXd& v) const;
   double step(const Eigen::VectorXd& u, const Eigen::VectorXd& d, double most) const;
   /// How far outside its cone u is, and u's first component: by cone.

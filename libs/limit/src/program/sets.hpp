@@ -8,7 +8,7 @@
 
 namespace holdfast::limit {
 
-/// Sets of bodies that hang together.
+/// Disjoint sets of connected bodies (union-find).
 class Sets {
  public:
   explicit Sets(std::size_t count) : parent_(count) {
@@ -23,7 +23,7 @@ class Sets {
     return item;
   }
 
-  /// False: they were one already.
+  /// Unites two sets; false if they were one already.
   bool join(std::size_t a, std::size_t b) {
     const std::size_t from = find(a);
     const std::size_t to = find(b);

@@ -40,8 +40,8 @@ class ContactCone {
   /// What remains of a load when the contacts do their best: the shortest of load + cone.
   struct Remainder {
     Vector6d wrench;
-    /// Whether it tells what can be balanced from what cannot: of the pushes none is opposed to it
-    /// by a larger share than it is of the load.
+    /// Whether it separates what can be balanced from what cannot: of the pushes none is opposed to
+    /// it by a larger share than it is of the load.
     bool is_settled = true;
   };
 

@@ -49,7 +49,7 @@ void keep_hull(std::vector<Plane::Corner>& corners) {
   }
 }
 
-/// What tells planes apart, in steps far below any facet and far above rounding.
+/// What distinguishes planes, in steps far below any facet and far above rounding.
 std::array<long long, 5> key(const ContactFacet& facet) {
   constexpr double kSteps = 1e6;
   const Vector3d normal = vector(facet.frame[2]);

@@ -26,7 +26,7 @@ std::size_t end_of(const Structure& structure, std::int32_t body) {
              : base::at(body);
 }
 
-/// Kruskal's tree of the most pressed joints; incomplete if not all bodies hang together.
+/// Kruskal's tree of the most compressed joints; incomplete if not all bodies are connected.
 Tree tree_of(const Structure& structure, std::span<const Wrench> known_forces) {
   const std::size_t ground = structure.bodies.size();
   std::vector<std::size_t> joints(structure.joints.size());

@@ -76,8 +76,7 @@ std::vector<Yield> yields_of(const Structure& structure,
   return yields;
 }
 
-/// Of every body that is not left out, from those of the groups; the largest is 1 mm. Empty if
-/// there is none.
+/// Makes Mechanism::velocities of those of the groups; empty if nothing moves.
 std::vector<base::Vec6<double>> velocities_of(const Structure& structure, const Part& part,
                                               const Eigen::VectorXd& of_groups) {
   std::vector<base::Vec6<double>> velocities(structure.bodies.size());
@@ -195,7 +194,7 @@ class Search {
     return std::ranges::all_of(is_free_, [](char free) { return free != 0; });
   }
 
-  /// Parts whose work is no longer small beside that of the whole are not worth their rounds.
+  /// Parts whose work is no longer small beside that of the whole do not pay for their rounds.
   bool is_part_small(const Part& upper, const Part& lower) const {
     constexpr double kShareMax = 0.1;
     return factor_work(ConeProgram(structure_, upper)) +

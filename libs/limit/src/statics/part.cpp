@@ -44,8 +44,8 @@ std::vector<base::Vec6<double>> loads_on_free(const Structure& structure, const 
   return of_free;
 }
 
-/// Leaves out one body of everything that hangs on no ground by its free joints: what they balance
-/// there follows from the others, as what they balance in all is nothing.
+/// Leaves out one body of everything that is not connected with the ground by its free joints: what
+/// they balance there follows from the others, as what they balance in all is nothing.
 void anchor(const Structure& structure, Part& part) {
   const std::size_t ground = structure.bodies.size();
   const auto end_of = [&](std::int32_t body) {

@@ -63,8 +63,8 @@ bool is_held(const std::vector<ContactPoint>& points, std::optional<double> fric
   return margin.is_settled && margin.share > kMarginTie;
 }
 
-/// More friction never balances less, so by halving; then as much more as the body needs to hold
-/// with something to spare. Where it takes large forces between things that are pressed apart,
+/// Halves, as more friction never balances less; then takes as much more as the body needs to hold
+/// with something to spare. Where it takes large forces between things that are wedged apart,
 /// rounding leaves few digits of where that begins.
 std::optional<double> find_friction_needed(const std::vector<ContactPoint>& points,
                                            const Vector6d& load, double gyration_mm) {

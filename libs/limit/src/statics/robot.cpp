@@ -21,7 +21,7 @@ Vector3 node_mm(const model::Robot& robot, std::size_t module) {
   return node;
 }
 
-/// Half a pitch from the node of a module.
+/// The point half a pitch from the node of a module, mm.
 Vector3 middle_mm(const model::Robot& robot, std::int32_t module, base::Direction direction) {
   const Vector3 along = base::unit_vector(robot.lattice(), direction);
   Vector3 place = node_mm(robot, base::at(module));

@@ -21,9 +21,9 @@ using base::at;
 using base::Direction;
 using base::Vec6;
 
-/// Of z, of its own energy norm: what it costs is that share of what other displacements are off,
-/// and of how far the core moves. With 1e-3 the facet nearest to tilting in growth of 10,000 leaves
-/// 38 of the last 785 states without a bound; 1e-5 is no better.
+/// The tolerance of z, as a share of its own energy norm: what it costs is that share of what other
+/// displacements are off, and of how far the core moves. With 1e-3 the facet nearest to tilting in
+/// growth of 10,000 leaves 38 of the last 785 states without a bound; 1e-5 is no better.
 constexpr double kAdjointTolerance = 1e-4;
 
 /// Adds z . u by component of a displacement, so that no sum waits for another.
@@ -45,7 +45,7 @@ ThreeVectors products(std::span<const Element> modules, const std::vector<ThreeV
   return sum;
 }
 
-/// None if it cannot be solved.
+/// The adjoint of a facet, by index in the target; null if it cannot be solved.
 std::shared_ptr<Adjoint> find_adjoint(StuckCore& core, const model::Robot& target,
                                       std::shared_ptr<const std::vector<Element>> elements,
                                       std::size_t facet) {
@@ -187,7 +187,7 @@ bool Adjoint::are_next(std::size_t count, std::span<const std::size_t> modules) 
                     [](std::size_t a, Element b) { return a == at(b); });
 }
 
-/// Those to modules that came before it.
+/// Calls each(direction, other) for the beams of a module to those that came before it.
 template <class Each>
 void Adjoint::for_each_beam(std::size_t module, const Each& each) const {
   for (const Direction direction : base::directions(target_->lattice())) {
@@ -235,8 +235,8 @@ void Adjoint::grow(std::size_t module) {
   pull_count_.push_back(pulls_.size());
 }
 
-/// Those of a module that has grown. It is in balance itself; one that hangs on another by a single
-/// beam moves with that.
+/// Finds the pulls of a module that has grown. It is in balance itself; one that is connected to a
+/// single other one moves with that and pulls at nothing.
 void Adjoint::find_pulls(std::size_t module) {
   const std::size_t first = pulls_.size();
   for_each_beam(module, [&](Direction direction, std::size_t other) {
@@ -253,7 +253,7 @@ void Adjoint::find_pulls(std::size_t module) {
   }
 }
 
-/// Of e in the beams and facets of a module that has grown.
+/// Adds e in the beams and facets of a module that has grown.
 void Adjoint::add_gaps(std::size_t module, Gram& gram) const {
   ThreeVectors forces;
   for_each_beam(module, [&](Direction direction, std::size_t other) {

@@ -64,7 +64,7 @@ class Gram {
 /// |q (u - u')| = |(z - z') K (u - u')| <= |s| |u - u'|, instead of |z| |u - u'| [Prager 1947].
 struct LocalAdjoint {
   std::vector<std::size_t> patch;  ///< Modules where z' is not zero.
-  std::optional<Gram> gram;        ///< Of s; none if it cannot be told.
+  std::optional<Gram> gram;        ///< Of s; none if it cannot be found.
 };
 
 /// Finds them, each kind of neighbourhood once. May be shared by threads.
@@ -73,7 +73,7 @@ class LocalAdjoints {
   /// Keeps a reference to the robot, of which any connected part may be asked for.
   explicit LocalAdjoints(const model::Robot& target);
 
-  /// Of a facet of a part of the target; `is_there` by module.
+  /// Finds what is known of a facet in a part of the target; `is_there` by module.
   LocalAdjoint find(const model::Facet& facet,
                     const std::function<bool(std::size_t)>& is_there) const;
 
@@ -110,8 +110,8 @@ class LocalAdjoints {
 ///   q u* = q u + z (f - K u) + (z* - z) K (u* - u),      |z* - z| <= |e| + the error of z.
 /// as K z* = q. The last holds as z* minimises 1/2 z K z - q z, and z misses the minimum by
 /// 1/2 |z* - z|^2: of the core's part z is the minimum itself, and the rest of it is 1/2 |e|^2.
-/// Far from the facet e is small, and where a module hangs on one other it is zero. So the force is
-/// known but for the product of two errors [Becker 2001].
+/// Far from the facet e is small, and where a module is connected to one other it is zero. So the
+/// force is known but for the product of two errors [Becker 2001].
 ///
 /// That is also q u* = z f - (K z - q) u + ..., and K z - q is next to nothing but where modules
 /// have been attached: there it is what e puts on them, and on the core what its solution has left.
@@ -121,7 +121,7 @@ class Adjoint {
  public:
   using Vec = base::Vec6<double>;
 
-  /// As it was solved.
+  /// The adjoint as it was solved.
   struct Core {
     std::size_t facet = 0;                                ///< Of the target.
     ThreeVectors load{};                                  ///< q on its module.
@@ -133,7 +133,7 @@ class Adjoint {
   /// Keeps a reference to the robot, all modules of which are there in the end.
   Adjoint(const model::Robot& target, Core core);
 
-  /// Of the target.
+  /// The facet's index in the target.
   std::size_t facet() const { return core_.facet; }
 
   /// Continues z to all modules of a connected state; from the core if it has been continued to
@@ -251,9 +251,9 @@ class WatchedFacets {
   /// solved have moved so far since, in the energy norm.
   void improve(double moved) { moved_ = moved; }
 
-  /// For displacements u: those of the solved robot, or the better ones, and of the modules that
-  /// have been attached since. None if the facet is not watched, or the robot does not grow the way
-  /// its adjoint has grown.
+  /// What the adjoint says for displacements u: those of the solved robot, or the better ones, and
+  /// of the modules that have been attached since. None if the facet is not watched, or the robot
+  /// does not grow the way its adjoint has grown.
   std::optional<Answer> find(std::size_t facet, const std::vector<Vec>& u);
 
  private:

@@ -69,7 +69,7 @@ bool EnergyBound::has_root(std::size_t module) const {
          target_.modules()[module].support == model::Support::kFixed;
 }
 
-/// Whether loads are handed no further: a support bears them, or the section's modules do.
+/// Whether loads are handed no further: a support carries them, or the section's modules do.
 bool EnergyBound::ends_way(std::size_t module) const {
   return section_ != nullptr ? section_place_[module] >= 0 : has_root(module);
 }
@@ -123,7 +123,7 @@ void EnergyBound::choose_way(std::size_t module) {
   node.root = has_root(module) ? module : nodes_[base::at(node.way.to)].root;
 }
 
-/// Moves until it is in balance, all others staying where they are.
+/// Moves a module until it is in balance, all others staying where they are.
 void EnergyBound::take_place(std::size_t module) {
   local_.insert(module);
   u_[module] = block_product(local_.stiffness(module).inverse, local_.pull(module, u_));
@@ -140,7 +140,7 @@ void EnergyBound::open_gaps(std::size_t module) {
   });
 }
 
-/// Of all modules that are there, by where they are now.
+/// The moved mass of all modules that are there, by where they are now.
 verdict::MovedMass EnergyBound::moved_mass() const {
   verdict::MovedMass moved;
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -210,7 +210,7 @@ std::vector<LoadSpread::Load> EnergyBound::loads_beside(std::size_t module) cons
   return loads;
 }
 
-/// A module's beams bear what they do where it is now, and what they put on its neighbours goes on
+/// A module's beams carry what they do where it is now, and what they put on its neighbours goes on
 /// to supports through all modules near its way. False if that cannot be.
 bool EnergyBound::spread(std::size_t from) {
   std::vector<std::size_t> way = {from};
@@ -406,7 +406,7 @@ void EnergyBound::forget_changes() {
   section_ratio_ = 0;
 }
 
-/// Whether a facet that was there when the robot was solved stays pressed all over, as far as the
+/// Whether a facet that was there when the robot was solved stays stuck, as far as the
 /// modules near it show, if |s - h w| / 2 is no more than `radius`.
 bool EnergyBound::is_pressed_nearby(std::size_t index, double radius) {
   const model::Facet& facet = target_.facets()[index];
@@ -453,8 +453,8 @@ bool EnergyBound::are_pressed(double radius) {
   return are_all;
 }
 
-/// Below 1 where a facet stays pressed all over, as its adjoint shows, if the displacements are off
-/// by the energy error at most: how much of what it lacks to tilting it may be off by.
+/// What a facet may be off by as a share of what it lacks to tilting, by its adjoint, if the
+/// displacements are off by the energy error at most: it stays stuck below 1.
 double EnergyBound::strain_by_adjoint(std::size_t index) {
   constexpr double kUnknown = std::numeric_limits<double>::infinity();
   const model::Facet& facet = target_.facets()[index];
@@ -563,8 +563,8 @@ void EnergyBound::move_with_section() {
   }
 }
 
-/// The section's modules bear what the answer takes them to; what they get is carried to there, and
-/// what all ways carry is weighed against how new modules lie now.
+/// The section's modules carry what the answer takes them to; what they get is carried to there,
+/// and what all ways carry is weighed against how new modules lie now.
 void EnergyBound::bear_by_section() {
   std::ranges::for_each(new_, [&](std::size_t module) { open_gaps(module); });
   std::vector<Vec> rest = borne_;
@@ -581,10 +581,10 @@ void EnergyBound::bear_by_section() {
     base::add_to(rest[base::at(section_place_[base::at(way.to)])], rest[i]);
   }
   changes_.weigh_all();
-  section_ratio_ = section_->load_ratio(resultant_);  // A beam may bear both.
+  section_ratio_ = section_->load_ratio(resultant_);  // A beam may carry both.
 }
 
-/// A bound of the largest load ratio, if every facet is pressed all over.
+/// A bound of the largest load ratio, if every facet is stuck.
 std::optional<double> EnergyBound::bound() {
   const double radius = energy_error() / 2;
   const double ratio =

@@ -37,7 +37,7 @@ namespace holdfast::plan {
 ///   c(s*) <= c((s + h w) / 2) + r |s - h w| / 2 <= c(solved) + c(change of s) / 2 + r |s - h w| /
 ///   2,
 /// and what a facet lacks to tilting is off by sqrt(h_m + h_f b^2) |s - h w| / 2 at most, b being
-/// half its width. If nothing breaks by that and every facet presses all over, then that is the
+/// half its width. If nothing breaks by that and every facet is in full contact, then that is the
 /// equilibrium of the paper's law, with all facets stuck. Each module costs the length of its way
 /// down. Where that way leads far aside, so that its beams bend, s is h w in the module's own
 /// beams, and what these put on its neighbours goes down through all modules near instead
@@ -96,12 +96,12 @@ class EnergyBound {
     return std::sqrt(std::max(0.0, changes_.energy())) + solved_error_;
   }
 
-  /// By how far bending moves the centre of mass of the robot that is there now, in plan, at most.
+  /// How far bending moves the centre of mass of the robot that is there now, in plan, at most.
   double shift_mm() const {
     return moved_.shift_mm(std::sqrt(sway_square_) * (energy_error() + solved_error_));
   }
 
-  /// That of a module that has a facet, or is new or beside such a one.
+  /// The displacement of a module that has a facet, or is new or beside such a one.
   const base::Vec6<double>& displacement(std::size_t module) const { return u_[module]; }
 
  private:

@@ -25,8 +25,8 @@ using base::Direction;
 using base::Mat6;
 using base::Vec6;
 
-/// Of solutions for the core, in the energy norm: a share of a module's weight on a beam. Facets
-/// that carry little more than their own modules lack about as much as that weight to tilting.
+/// The tolerance of solutions for the core: a share of a module's weight on a beam, in the energy
+/// norm. Facets that carry little more than their own modules lack about as much to tilting.
 constexpr double kTolerance = 0.03;
 
 /// What a solution says of its own error counts, but no less than this share of that tolerance: it
@@ -43,7 +43,7 @@ constexpr double kGapMax = 0.3;
 /// and as many solutions; with 30 one is too few.
 constexpr double kGapShare = 3;
 
-/// For no known error at all.
+/// The coarseness of a solution whose error need not be known.
 constexpr double kRoughly = std::numeric_limits<double>::infinity();
 
 /// What the first solution begins with: by it one learns what the tolerance is of the whole.
@@ -55,7 +55,7 @@ constexpr double kToleranceFirst = 0.03;
 constexpr int kSweepMax = 12;
 constexpr double kGainShare = 1e-4;
 
-/// So many steps from new modules those of the core move with them at first.
+/// Modules of the core at most so many steps from new ones move with them at first.
 constexpr int kNear = 2;
 
 Direction direction_of(int index) { return static_cast<Direction>(index); }
@@ -96,7 +96,7 @@ FollowedRobot::FollowedRobot(const model::RobotSpec& spec, const model::Robot& t
   }
 }
 
-/// To the core, or a facet, through as few new modules as can be.
+/// Chooses the way to the core, or a facet, through as few new modules as can be.
 void FollowedRobot::choose_way(NewModule& added) const {
   if (first_facet_[added.module] < first_facet_[added.module + 1]) {
     return;
@@ -158,7 +158,7 @@ void FollowedRobot::relax(const std::vector<std::size_t>& modules) {
   }
 }
 
-/// New modules but for so many.
+/// All new modules but the first so many.
 std::vector<std::size_t> FollowedRobot::modules_from(std::size_t first) const {
   std::vector<std::size_t> modules;
   for (std::size_t i = first; i < new_.size(); ++i) {
@@ -167,7 +167,7 @@ std::vector<std::size_t> FollowedRobot::modules_from(std::size_t first) const {
   return modules;
 }
 
-/// Those at most kNear steps away from these, which can move.
+/// The modules at most kNear steps away from these that can move, without these.
 std::vector<std::size_t> FollowedRobot::modules_near(std::vector<std::size_t> modules) const {
   const std::size_t count = modules.size();
   std::unordered_set<std::size_t> seen(modules.begin(), modules.end());
@@ -199,7 +199,7 @@ FollowedRobot::Vec FollowedRobot::gap_force(const Spring& spring) const {
                          target_.material().pitch_mm);
 }
 
-/// Those of new modules but for the first so many, each once, with h w for s.
+/// The springs of new modules but for the first so many, each once, with h w for s.
 std::vector<FollowedRobot::Spring> FollowedRobot::find_springs(std::size_t first) const {
   std::vector<Spring> springs;
   for (const std::size_t module : modules_from(first)) {
@@ -305,7 +305,7 @@ bool FollowedRobot::make_system(const std::vector<Vec>& loads) {
   return false;
 }
 
-/// Of the last one, which was to be so coarse.
+/// How far the last solution, which was to be so coarse, is off in the energy norm, at most.
 double FollowedRobot::solution_error(double coarseness) const {
   const double error_min = kErrorShareMin * kTolerance * unit_;
   return coarseness == kRoughly
@@ -344,7 +344,7 @@ bool FollowedRobot::find_motion(std::vector<Vec> change, double coarseness) {
   return true;
 }
 
-/// So many times as far as was found last.
+/// Moves the core so many times as far as was found last.
 void FollowedRobot::move_core(double factor) {
   if (factor == 0) {
     return;
@@ -387,7 +387,7 @@ double FollowedRobot::ratio_of(std::size_t module, std::size_t other, int direct
   return std::max(known, connection_ratio(target_, module, other, direction, force));
 }
 
-/// That no connection's exceeds, if the displacements are off by `error`.
+/// The load ratio that no connection's exceeds, if the displacements are off by `error`.
 double FollowedRobot::load_ratio(double error) const {
   double largest = 0;
   for (const Element element : elements_) {
@@ -424,7 +424,7 @@ bool FollowedRobot::move(std::vector<Vec> change, double coarseness) {
   return true;
 }
 
-/// Of d, for these h w.
+/// The square of |d| for these h w.
 double FollowedRobot::gap_energy(const std::vector<Vec>& gap) const {
   double energy = 0;
   for (std::size_t i = 0; i < gap.size(); ++i) {

@@ -53,16 +53,16 @@ class FollowedRobot {
   /// Attaches a module, which must be beside one that is there, and not fixed.
   void add(Element module);
 
-  /// By module of the target, after solve().
+  /// The displacements by module of the target, after solve().
   const std::vector<Vec>& displacement() const { return u_; }
 
   /// The robot that is there now; none if the core's equations cannot be solved so.
   std::optional<Result> solve();
 
-  /// The same nearer, after solve(), which asks for it once where that is sure to pay.
+  /// Comes nearer than solve(), which asks for it once where that is sure to pay.
   std::optional<Result> improve();
 
-  /// Multigrid's, in all solutions.
+  /// The iterations of multigrid in all solutions.
   int iteration_count() const { return iteration_count_; }
 
  private:
@@ -77,7 +77,7 @@ class FollowedRobot {
   /// A module that is not of the core.
   struct NewModule {
     std::size_t module = 0;
-    int way = 0;    ///< The direction of the neighbour that bears it if it is not in balance,
+    int way = 0;    ///< The direction of the neighbour that carries it if it is not in balance,
     int depth = 0;  ///< which is that of a facet of its own if this is 0.
   };
 
@@ -117,7 +117,7 @@ class FollowedRobot {
   double ratio_per_norm_ = 0;
   LocalBalance local_;
   std::vector<std::size_t> first_facet_;  ///< By module.
-  /// By module: its place in the core, kAbsent, or less than that if it is new.
+  /// Each module's place in the core, kAbsent, or less than that if it is new.
   std::vector<std::int32_t> place_;
   ElementSet core_;
   std::vector<Element> elements_;  ///< Of the core.

@@ -54,11 +54,11 @@ class FollowingWorth {
     int state_count = 0;
   };
 
-  /// To make a robot, its equations and their hierarchy, in iterations.
+  /// The effort to make a robot, its equations and their hierarchy, in iterations.
   static constexpr int kSetup = 15;
-  /// Of a solution that follows, about three, for each of the states that it certifies.
+  /// The least effort, for each certified state, of a solution that follows: it takes about three.
   static constexpr int kEffortMin = 1;
-  /// Solved states.
+  /// The longest rest, in solved states.
   static constexpr int kPauseMax = 1000;
 
   Share solved_;

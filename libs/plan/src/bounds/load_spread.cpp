@@ -19,16 +19,16 @@ using base::at;
 using base::Direction;
 using base::Vec6;
 
-/// So many steps away from the way modules take a part of the load.
+/// Modules so many steps away from the way take a part of the load.
 constexpr int kReach = 2;
 
-/// So many steps away at most a part that is known is near.
+/// A part that is known is near if it is at most so many steps away.
 constexpr int kDetourMax = 4;
 
 /// What is solved at most.
 constexpr std::size_t kPartSizeMax = 1000;
 
-/// Of the load, what the solution may leave unbalanced; rounding leaves about 1e-12.
+/// The share of the load that the solution may leave unbalanced; rounding leaves about 1e-12.
 constexpr double kResidualMax = 1e-9;
 
 /// Where so many are known all are forgotten: each takes one or two megabytes.
@@ -87,7 +87,7 @@ std::size_t LoadSpread::gather(std::span<const std::size_t> way, int reach,
   return inner_count;
 }
 
-/// Those between modules that have a place, each once, and to modules that stand still.
+/// Finds the beams between modules that have a place, each once, and to modules that stand still.
 void LoadSpread::find_beams(SpreadPart& part, const LocalBalance& there) const {
   for (std::size_t i = 0; i < part.modules.size(); ++i) {
     const auto here = static_cast<std::int32_t>(i);
@@ -101,7 +101,7 @@ void LoadSpread::find_beams(SpreadPart& part, const LocalBalance& there) const {
   }
 }
 
-/// The equations of all beams and facets; false if something hangs free.
+/// Factors the stiffness of all beams and facets; false if something is not supported.
 bool LoadSpread::factor(SpreadPart& part) const {
   const std::vector<std::size_t>& modules = part.modules;
   BeamEquations equations(blocks_, modules.size());
@@ -126,7 +126,7 @@ void LoadSpread::forget_places(const std::vector<std::size_t>& modules) {
   }
 }
 
-/// All modules that are there near a way; none if that is not worth while.
+/// All modules that are there near a way; none if that does not pay.
 LoadSpread::Part LoadSpread::make(std::span<const std::size_t> way, const LocalBalance& there) {
   const auto part = std::make_shared<SpreadPart>();
   part->inner_count = gather(way, kReach, there, part->modules);
@@ -152,7 +152,7 @@ LoadSpread::Part LoadSpread::make_cap(std::span<const std::size_t> way, const Sp
   return factor(*cap) ? cap : nullptr;
 }
 
-/// From a module to the nearest one within a part that is known; empty if none is near.
+/// The way from a module to the nearest one within a part that is known; empty if none is near.
 std::vector<std::size_t> LoadSpread::way_to_known(std::size_t module, const LocalBalance& there) {
   struct Reached {
     std::size_t module = 0;
@@ -207,7 +207,7 @@ void LoadSpread::subtract_forces(const SpreadPart& part, const std::vector<Vec>&
   }
 }
 
-/// By place; empty if that cannot be told to all digits.
+/// The displacements by place; empty if they leave more than kResidualMax of the loads.
 std::vector<LoadSpread::Vec> LoadSpread::displacement(const SpreadPart& part,
                                                       const std::vector<Vec>& loads) const {
   std::vector<Vec> u = loads;
@@ -241,7 +241,7 @@ std::vector<LoadSpread::Vec> LoadSpread::take(std::vector<Load>& loads, const Sp
   return taken;
 }
 
-/// What the part below bears of a cap.
+/// Adds what the part below carries of a cap.
 void LoadSpread::add_loads_below(const Share& cap, std::vector<Vec>& loads) const {
   for (const SpreadPart::Beam& beam : cap.part->beams) {
     if (beam.below >= 0) {

@@ -56,7 +56,7 @@ class LoadSpread {
     std::vector<Vec> u;
   };
 
-  /// So many modules for each on the way a part must have: fewer bend like the way itself. In a
+  /// A part must have so many modules for each on the way: fewer bend like the way itself. In a
   /// scaffold of 9,100 modules parts of two to four made an order a fifth slower.
   static constexpr std::size_t kWidthMin = 5;
 
@@ -65,7 +65,7 @@ class LoadSpread {
 
   /// How loads on the first module of a way, which ends at a support, or beside it, are taken to
   /// supports by the forces of all shares together, all facets stuck. Empty if there are too few
-  /// or too many modules near the way, or if that cannot be told to all digits.
+  /// or too many modules near the way, or if that cannot be found to all digits.
   std::vector<Share> spread(std::span<const std::size_t> way, std::span<const Load> loads,
                             const LocalBalance& there);
 

@@ -21,7 +21,7 @@ using base::Vec6;
 constexpr std::size_t kPatchMax = 26;
 constexpr int kRadiusMax = 6;
 
-/// Of |z|^2, what rounding may take from |s|^2: some thousand times what it does.
+/// The share of |z|^2 that rounding may take from |s|^2: some thousand times what it does.
 constexpr double kRounding = 1e-9;
 
 }  // namespace
@@ -99,7 +99,7 @@ LocalAdjoints::Region LocalAdjoints::region_around(
 }
 
 /// The equations of the modules of a region that have a row; those that have none, and no others,
-/// stand still. None if something hangs free.
+/// stand still. None if something is not supported.
 std::optional<solver::BlockLu> LocalAdjoints::equations(
     const Region& region, const std::vector<std::int16_t>& row) const {
   const auto count = static_cast<std::size_t>(
@@ -123,7 +123,7 @@ std::optional<solver::BlockLu> LocalAdjoints::equations(
   return equations.factor();
 }
 
-/// Of the first module, under loads on it.
+/// The displacements of the first module, under each of three loads on it.
 std::optional<ThreeVectors> LocalAdjoints::displacements(
     const ThreeVectors& loads, const Region& region, const std::vector<std::int16_t>& row) const {
   const auto factors = equations(region, row);

@@ -137,7 +137,7 @@ std::vector<Element> RobotGrowth::removable(const ElementSet& state) const {
   return list;
 }
 
-/// Those that can get to their cells, or come away from them.
+/// The elements of `list` that can get to their cells, or come away from them.
 std::vector<Element> RobotGrowth::reachable(std::vector<Element> list, const ElementSet& state,
                                             Sense sense) const {
   if (rule_.reach == Reach::kFree) {

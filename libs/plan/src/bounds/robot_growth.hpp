@@ -42,15 +42,15 @@ class RobotGrowth final : public GrowingStructure {
 
   Judgement judge(const ElementSet& state) override;
 
-  /// By a RunJudge.
+  /// Judges runs of more than one element by a RunJudge.
   std::vector<Judgement> judge_run(const ElementSet& state, Sense sense,
                                    std::span<const Element> run,
                                    const std::function<bool()>& is_late) override;
 
   std::size_t run_length_max() const override { return RunJudge::kRunLength; }
 
-  /// The same as judge() of each of these states, each connected, solved; threads share them. None
-  /// of those that are left once `is_late`, which several threads may ask.
+  /// Judges these connected states as judge() does, each solved; threads share them. None of those
+  /// that are left once `is_late`, which several threads may ask.
   std::vector<std::optional<Judgement>> judge_each(std::span<const ElementSet> states,
                                                    const std::function<bool()>& is_late);
 

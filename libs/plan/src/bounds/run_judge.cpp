@@ -25,23 +25,23 @@ namespace {
 constexpr std::size_t kPieceMin = 8;
 constexpr std::size_t kPieceCountMax = 8;
 
-/// In robots of fewer modules a solution from nothing costs no more than one that follows.
+/// Smaller robots are not followed: a solution from nothing costs no more there.
 constexpr std::size_t kFollowedMin = 256;
 
 /// A section's answers take about four solutions from nothing: for fewer states they are not
 /// sought.
 constexpr std::size_t kSectionMin = 6;
 
-/// Each costs another solution that follows.
+/// The most improvements of a state, each of which costs another solution that follows.
 constexpr int kImprovementMax = 2;
 
-/// A facet that has left so many states of a run without a bound, alone or with others, is worth
-/// its adjoint, which takes three solutions from nothing and a sum over all modules for each state
-/// that is solved; but of so many facets after a run at most.
+/// The adjoint of a facet that has left so many states of a run without a bound, alone or with
+/// others, is found, which takes three solutions from nothing and a sum over all modules for each
+/// state that is solved; but of so many facets after a run at most.
 constexpr int kDoubtMin = 32;
 constexpr std::size_t kAdjointCountMax = 16;
 
-/// Where no support polygon decides.
+/// What bending may move the centre of mass by where no support polygon decides.
 constexpr double kNoEdge = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -49,7 +49,7 @@ constexpr double kNoEdge = std::numeric_limits<double>::infinity();
 /// Certifies states of a growing robot one after another from the last that was solved.
 class RunJudge::Certifier {
  public:
-  /// At the state before a piece of a run.
+  /// Begins at the state before a piece of a run.
   Certifier(const RunJudge& judge, const ElementSet& state, FollowingWorth& worth)
       : judge_(judge),
         target_(judge.target_),
@@ -246,8 +246,8 @@ std::vector<Judgement> RunJudge::judge(const ElementSet& state, Sense sense,
   return judgements;
 }
 
-/// The facets that are worth their adjoints after a run, those first that have left the most states
-/// without a bound.
+/// The facets whose adjoints pay after a run, those first that have left the most states without a
+/// bound.
 std::vector<std::size_t> RunJudge::doubtful_facets(const ElementSet& state,
                                                    std::span<const Piece> pieces) const {
   std::map<std::size_t, int> doubtful;
@@ -270,7 +270,7 @@ std::vector<std::size_t> RunJudge::doubtful_facets(const ElementSet& state,
   return facets;
 }
 
-/// Before a run: continues what is known of facets to all its modules.
+/// Continues what is known of facets to all modules of a run, before it is judged.
 void RunJudge::grow_adjoints(const ElementSet& state, std::span<const Element> run) {
   const std::vector<Element> elements = state.elements();
   host::Team team(thread_count_);

@@ -29,7 +29,7 @@ class RunJudge {
   /// Keeps references to the whole robot and to what it is made of.
   RunJudge(const model::RobotSpec& spec, const model::Robot& target, int thread_count);
 
-  /// As GrowingStructure::judge_run().
+  /// Judges a run as GrowingStructure::judge_run() is to.
   std::vector<Judgement> judge(const ElementSet& state, Sense sense, std::span<const Element> run,
                                const std::function<bool()>& is_late);
 

@@ -30,7 +30,7 @@ constexpr std::size_t kStepsMin = 12;
 /// The section lies so many steps below the top, where not all modules of a layer need be there.
 constexpr std::size_t kStepsBelowTop = 1;
 
-/// Of the solutions, of their own energy norm: a thousandth of what the core moves by.
+/// The tolerance of solutions, of their own energy norm: a thousandth of what the core moves by.
 constexpr double kSectionTolerance = 3e-4;
 
 /// Whether no load pulls aside or twists.
@@ -44,7 +44,7 @@ bool pulls_straight_down(const model::Robot& target) {
   return true;
 }
 
-/// Each but the first beside an earlier one; empty if they do not hang together.
+/// Each but the first is beside an earlier one; empty if they are not connected.
 std::vector<std::size_t> in_order(const model::Robot& target, std::vector<std::size_t> modules) {
   for (auto rest = modules.begin() + 1; rest != modules.end(); ++rest) {
     const auto is_beside = [&](std::size_t module) {
@@ -64,7 +64,7 @@ std::vector<std::size_t> in_order(const model::Robot& target, std::vector<std::s
 
 }  // namespace
 
-/// Layer by layer from the supports, as long as each is small.
+/// Looks layer by layer from the supports, as long as each is small.
 std::vector<std::size_t> find_section(const model::Robot& target, const ElementSet& state) {
   if (!pulls_straight_down(target)) {
     return {};
@@ -215,7 +215,7 @@ double SectionResponse::error(const Resultant& resultant) const {
   return sum;
 }
 
-/// In single precision, or where the core is too slender for it in double.
+/// Solves in single precision, or in double where the core is too slender for that.
 std::optional<SectionResponse> SectionResponse::make(const model::RobotSpec& spec,
                                                      const model::Robot& target,
                                                      const ElementSet& state,
@@ -255,7 +255,7 @@ bool SectionResponse::solve(StuckCore& core) {
   return true;
 }
 
-/// With the error of the solution.
+/// Finds the largest load ratios by R and by -R, with the error of the solution.
 void SectionResponse::find_ratios(Response& response) const {
   response.ratio = {};
   for (const Element element : elements_) {

@@ -18,13 +18,13 @@ namespace holdfast::plan {
 /// How a slender robot, the core, answers to what grows on top of it.
 ///
 /// A *section* is all modules at one number of steps from the supports, near the top. Weights that
-/// come to stand above it are borne by the section's modules as a resultant R: a force straight
+/// come to stand above it are carried by the section's modules as a resultant R: a force straight
 /// down and two moments about the section's centroid. If each module takes the part of R that the
 /// theory of beams gives it, its share of a stress that is linear over the section,
 ///   p_i = W B_i' (sum_k B_k W B_k')^-1 R,      B_i p_i the resultant of p_i,
 /// W being a module's own area and second moments of it, then three solutions for the core, one for
 /// each component of R, answer to whatever comes: there s = h w but for the error of these
-/// solutions. What a module really bears differs from p by forces in balance over the section.
+/// solutions. What a module really carries differs from p by forces in balance over the section.
 class SectionResponse {
  public:
   using Vec = base::Vec6<double>;
@@ -32,9 +32,9 @@ class SectionResponse {
   /// A force downwards and two moments.
   using Resultant = std::array<double, 3>;
 
-  /// Of a safe state, all of whose facets are stuck, as the core, above this section of it. None if
-  /// its answers cannot be found. Keeps a reference to the robot, all modules of which are there in
-  /// the end.
+  /// Takes a safe state, all of whose facets are stuck, as the core, above this section of it. None
+  /// if its answers cannot be found. Keeps a reference to the robot, all modules of which are there
+  /// in the end.
   static std::optional<SectionResponse> make(const model::RobotSpec& spec,
                                              const model::Robot& target, const ElementSet& state,
                                              std::vector<std::size_t> section);
@@ -45,7 +45,7 @@ class SectionResponse {
   /// The resultant of loads about the origin, of which forces aside and torsion must be none.
   Resultant resultant(const Vec& load) const;
 
-  /// The part of R that a module bears, by its place in modules(), about the origin.
+  /// The part of R that a module carries, by its place in modules(), about the origin.
   Vec share(std::size_t place, const Resultant& resultant) const;
 
   /// How a module of the core moves by R more.

@@ -34,7 +34,7 @@ class ChangedForces {
   /// beam or facet there.
   Vec middle(const Vec& load, std::size_t module, int direction) const;
 
-  /// Nothing has changed.
+  /// Forgets all changes.
   void clear();
 
   /// |s - h w|^2 of all that was weighed.
@@ -47,13 +47,13 @@ class ChangedForces {
   /// A module hands on one more load, about the origin, to its neighbour in a direction.
   void hand_on(std::size_t module, int direction, const Vec& load);
 
-  /// The same instead of all that it has handed on there.
+  /// A module hands on this load there instead of all that it has handed on so far.
   void hand_on_only(std::size_t module, int direction, const Vec& load);
 
-  /// The beam to a neighbour bears what these displacements of its ends mean besides.
+  /// The beam to a neighbour carries what these displacements of its ends mean besides.
   void bear(std::size_t module, int direction, const Vec& u_module, const Vec& u_other);
 
-  /// A facet bears one more force; not weighed yet.
+  /// A facet carries one more force; not weighed yet.
   void bear(std::size_t facet, const Vec& force) { base::add_to(facets_[facet].change, force); }
 
   /// What h w of a beam is now, if it was nothing.

@@ -108,7 +108,7 @@ class ChangedRobot::System {
     }
   }
 
-  /// False if the core does not know enough, or the system is singular.
+  /// Finds the unknowns. False if the core does not know enough, or the system is singular.
   [[nodiscard]] bool solve() {
     if (!is_known()) {
       return false;

@@ -16,13 +16,13 @@
 
 namespace holdfast::plan {
 
-/// By facet.
+/// Contact states by facet.
 using ContactStates = std::vector<mechanics::ContactState>;
 
 /// Follows the path of a check, Newton's method over contact states: `next(states)` solves for
-/// states and returns those that the solution prescribes, none if it cannot be told. Returns the
-/// states that prescribe themselves; none if the path comes back to where it was, or is longer than
-/// `step_max`.
+/// states and returns those that the solution prescribes, none if these are not certain. Returns
+/// the states that prescribe themselves; none if the path comes back to where it was, or is longer
+/// than `step_max`.
 template <class Next>
 std::optional<ContactStates> settled_states(ContactStates states, std::size_t step_max,
                                             const Next& next) {
@@ -48,7 +48,7 @@ std::optional<mechanics::ContactState> certain_state(const solver::FacetLaw<doub
                                                      const base::Vec6<double>& trial,
                                                      double scale_n);
 
-/// By which share a force that decides may be off.
+/// The share by which a force that decides may be off.
 inline constexpr double kForceShare = 1e-6;
 
 /// What a robot has besides its core.
@@ -89,13 +89,13 @@ class ChangedRobot {
   ChangedRobot(const SolvedCore& core, const Change& change, double scale_n)
       : core_(core), change_(change), scale_n_(scale_n) {}
 
-  /// With facets in these states, whatever states it prescribes. No states: those of the core, and
-  /// of new modules all stuck; what facets do is then not looked at. None if the core does not know
-  /// some answer.
+  /// Solves with facets in these states, whatever states that prescribes. No states: those of the
+  /// core, and of new modules all stuck; what facets do is then not looked at. None if the core
+  /// does not know some answer.
   std::optional<Changed> solve(const ContactStates& states) const;
 
-  /// In the states that prescribe themselves where a check's path ends; none if it does not end, or
-  /// not for certain there.
+  /// Solves in the states that prescribe themselves where a check's path ends; none if it does not
+  /// end, or not for certain there.
   std::optional<Changed> settle() const;
 
   /// Whether the law may have other solutions beside one that was settled. If a facet that may have

@@ -19,7 +19,7 @@ namespace holdfast::plan {
 /// depends on what was asked before. Not for several threads.
 class CoreResponse {
  public:
-  /// None if the core is too large for the direct solver, or double precision does not suffice.
+  /// Solves the core; none if that is too large for the direct solver, or for double precision.
   static std::unique_ptr<CoreResponse> make(model::Robot core,
                                             const solver::EquilibriumOptions& options);
 

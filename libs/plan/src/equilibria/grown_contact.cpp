@@ -46,7 +46,7 @@ GrownContact::GrownContact(const model::Robot& robot, const model::Touch& floor,
   }
 }
 
-/// Of a new module, stuck.
+/// The facet of a new module on the floor, stuck.
 FacetState GrownContact::own_facet() const {
   return {.module = 0,
           .direction = base::down(robot_.lattice()),
@@ -89,8 +89,8 @@ bool GrownContact::is_on_flat_floor(const Site& site) const {
 }
 
 /// Whether the check would end here as well, but for further solutions: it looks for the exact
-/// law's answer where open and tilted facets may pull, and at the corners where no facet presses
-/// all over.
+/// law's answer where open and tilted facets may pull, and at the corners where no facet is
+/// stuck.
 Footing GrownContact::footing_of(const Site& site, const ChangedRobot& grown,
                                  const Changed& settled) const {
   Footing footing;

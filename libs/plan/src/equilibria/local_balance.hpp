@@ -62,7 +62,7 @@ class LocalBalance {
     }
   }
 
-  /// Of a module that touches something. Stays where it is.
+  /// The stiffness of a module that touches something. Stays where it is.
   const Stiffness& stiffness(std::size_t module);
 
   /// Adds the beams of a module; they are valid as long as *this stays where it is.
@@ -71,7 +71,7 @@ class LocalBalance {
   /// What is out of balance at a module if it does not move, and others by u.
   Vec pull(std::size_t module, const std::vector<Vec>& u) const;
 
-  /// The same by beams that were looked up before.
+  /// What is out of balance there, by beams that were looked up before.
   Vec pull(std::size_t module, std::span<const Beam> beams, const std::vector<Vec>& u) const;
 
   /// The force that a stuck facet in a direction takes from its module.
@@ -82,7 +82,7 @@ class LocalBalance {
   BeamBlocks blocks_;
   std::vector<std::size_t> first_facet_;  ///< By module.
   std::vector<std::uint8_t> is_there_;
-  /// By the directions of a module's beams and facets.
+  /// What is known by the directions of a module's beams and facets.
   std::unordered_map<std::uint32_t, Stiffness> known_;
 };
 

@@ -22,7 +22,7 @@ class NewModules {
   using Vec = base::Vec6<double>;
   using Mat = base::Mat6<double>;
 
-  /// None at all.
+  /// There are no new modules at all.
   NewModules() = default;
 
   /// `loads` by new module; `beams` between these, and their `facets` with states, by place in it.

@@ -69,8 +69,8 @@ Site SiteFinder::find(const Cell& cell) const {
   return site;
 }
 
-/// Not by a module that rests on the floor where the others stand on obstacles at another level:
-/// then there is no level plane any more.
+/// Whether the polygon still decides: not with a module that rests on the floor where the others
+/// stand on obstacles at another level, as there is no level plane any more then.
 bool SiteFinder::is_polygon_kept_by(const Site& site) const {
   return !has_polygon_ || !site.is_on_floor ||
          robot_.modules()[base::at(robot_.facets().front().module)].cell.z == site.cell.z;

@@ -46,7 +46,7 @@ bool SolvedCore::find_columns(std::span<const std::size_t> modules, std::size_t 
   return true;
 }
 
-/// By reciprocity where only the module that moves has a column.
+/// Goes by reciprocity where only the module that moves has a column.
 Vec6<double> SolvedCore::answer(std::size_t module, const PointLoad& load) const {
   if (has_column(load.module)) {
     return base::multiply(columns_[load.module][module], load.load);

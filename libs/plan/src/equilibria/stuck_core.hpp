@@ -18,7 +18,7 @@ class StuckCore {
  public:
   using Vecs = std::vector<base::Vec6<double>>;
 
-  /// None if these modules are no robot, or their equations need too much memory.
+  /// Makes the equations; none if these modules are no robot, or they need too much memory.
   static std::unique_ptr<StuckCore> make(const model::RobotSpec& spec, const ElementSet& modules,
                                          solver::Precision precision);
 
@@ -27,7 +27,7 @@ class StuckCore {
     double error = 0;  ///< In the energy norm, at most.
   };
 
-  /// By module of the part: `error` is `tolerance` times the energy norm of the answer, or none if
+  /// Displacements by module of the part; their error is estimated from `tolerance`, and is 0 if
   /// the system is exact. None if it cannot be solved so.
   std::optional<Answer> answer(const Vecs& loads, double tolerance);
 

@@ -13,7 +13,7 @@
 namespace holdfast::plan {
 namespace {
 
-/// Of how far bending moves the centre of mass.
+/// Rounding in how far bending moves the centre of mass, as a share.
 constexpr double kSwayRounding = 1e-6;
 
 using base::Vec6;
@@ -51,7 +51,7 @@ std::vector<solver::Edge> pairs_of(const std::vector<Site>& sites) {
   return edges;
 }
 
-/// Those where a module is more than a load.
+/// The sites where a module is more than a load.
 std::vector<Site> stiffening(const std::vector<Site>& sites) {
   std::vector<Site> some;
   std::ranges::copy_if(sites, std::back_inserter(some),
@@ -94,7 +94,7 @@ CandidateJudge::CandidateJudge(const model::RobotSpec& spec, const CandidateOpti
       rigid_(robot_, robot_.kinds().front().mass_kg),
       is_held_(robot_.fixed_count() > 0 || robot_.has_bonded_facets()) {}
 
-/// False if nothing can be judged without checks.
+/// Finds what all candidates share. False if nothing can be judged without checks.
 bool CandidateJudge::prepare(const RobotSymmetry& symmetry) {
   if (!is_held_ && !finder_.has_polygon() && !options_.equilibrium.is_bonded) {
     return false;
@@ -285,8 +285,8 @@ void CandidateJudge::judge_fully(std::vector<Waiting> waiting) const {
   }
 }
 
-/// Those whose facets turn out not to stick, though those of the robot without them do, come
-/// `again`, settled.
+/// Judges candidates by one solution. Those whose facets turn out not to stick, though those of the
+/// robot without them do, go to `again`, settled.
 void CandidateJudge::judge_together(std::span<Waiting> lanes, std::vector<Waiting>& again) const {
   std::vector<LaneBlock> more(influence_->slot_count());
   for (std::size_t lane = 0; lane < lanes.size(); ++lane) {

@@ -22,8 +22,8 @@ namespace holdfast::plan {
 /// Judges candidates from the robot without them, as far as that is certain to be a check's answer.
 class CandidateJudge {
  public:
-  /// None if nothing can be said without checks. Asked only for representatives of cells by the
-  /// robot's symmetry. Keeps references.
+  /// Makes a judge; none if nothing can be said without checks. Asked only for representatives of
+  /// cells by the robot's symmetry. Keeps references.
   static std::unique_ptr<CandidateJudge> make(const model::RobotSpec& spec,
                                               const RobotSymmetry& symmetry,
                                               const CandidateOptions& options);

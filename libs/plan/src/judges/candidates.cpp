@@ -29,10 +29,10 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// So many are judged between two calls of the progress.
+/// How many are judged between two calls of the progress.
 constexpr std::size_t kStride = 1024;
 
-/// By a check of the grown robot.
+/// Judges a candidate by a check of the grown robot.
 Candidate check_candidate(model::RobotSpec spec, const base::Cell& cell,
                           const CandidateOptions& options) {
   (options.is_planned ? spec.planned : spec.existing).push_back(cell);

@@ -9,14 +9,14 @@ namespace {
 
 using base::Cell;
 
-/// Whether nothing but the cells tells one direction sideways from another.
+/// Whether nothing but the cells distinguishes one direction sideways from another.
 bool is_plain(const model::RobotSpec& spec) {
   return spec.lattice == base::kCubic && spec.released.empty() && spec.obstacles.empty() &&
          !spec.gravity_m_s2 && spec.kinds.empty() && spec.own_kinds.empty() &&
          spec.own_masses.empty() && spec.payloads.empty() && spec.carried.empty();
 }
 
-/// Whether beams bend alike about both axes of their section: those that stand tell x from y else.
+/// Whether beams bend alike about both axes of their section, so that x and y are alike.
 bool is_square(const model::Material& material) {
   return material.moment_x_mm4 == material.moment_y_mm4;
 }

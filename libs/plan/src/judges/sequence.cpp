@@ -33,7 +33,7 @@ base::Error in_step(const base::Error& error, std::size_t step) {
           .where = std::to_string(step)};
 }
 
-/// So many steps must have a core in common before it is worth solving.
+/// A core that fewer steps have in common does not pay.
 constexpr std::size_t kSharingMin = 3;
 
 /// Whether the second step moves what the first one has moved, and nothing else.
@@ -46,7 +46,7 @@ bool goes_on(const model::Step& first, const model::Step& second) {
          std::ranges::equal(first.moves, second.moves, {}, &model::Move::to, &model::Move::from);
 }
 
-/// Which steps leave the same modules where they are as others beside them.
+/// Whether each step leaves the same modules where they are as others beside it.
 std::vector<bool> sharing_steps(std::span<const model::Step> steps) {
   std::vector<bool> is_sharing(steps.size());
   for (std::size_t begin = 0; begin < steps.size();) {
@@ -107,7 +107,7 @@ class Run {
  private:
   static constexpr std::size_t kChunk = host::Team::kChunk;
 
-  /// One that is not in use; what it has kept of other steps serves again.
+  /// Takes a judge that is not in use; what it has kept of other steps serves again.
   std::unique_ptr<StageJudge> take_judge() {
     const std::lock_guard lock(mutex_);
     if (judges_.empty()) {

@@ -28,11 +28,11 @@ class MoveJudge {
   /// that nothing is proved by their being barred.
   std::size_t undecided_count() const { return undecided_count_; }
 
-  /// Tells who asked for it how far the nearest shape is.
+  /// Reports how far the nearest shape is to MoveOptions::progress.
   void report(int distance) const;
 
  private:
-  /// Unstable if the stage cannot be.
+  /// A stage that cannot be is unstable.
   verdict::Verdict judge(const RobotState& before, const model::Step& step,
                          const Transition& transition, Stage stage) const;
 

@@ -131,9 +131,9 @@ class Search {
     return judge_.count() - before;
   }
 
-  /// So many moves of the exact search, and a few; where no plan is known some from the target
-  /// backwards too, which proves at once that one that nothing leads to cannot be reached. Whether
-  /// there is an answer.
+  /// Goes on with the exact search by so many moves, and a few; where no plan is known by some from
+  /// the target backwards too, which proves at once that one that nothing leads to cannot be
+  /// reached. Whether there is an answer.
   bool search(std::size_t count) {
     constexpr std::size_t kFew = 100;
     constexpr std::size_t kBackwardShare = 4;

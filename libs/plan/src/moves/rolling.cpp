@@ -9,10 +9,10 @@
 namespace holdfast::plan {
 namespace {
 
-/// Of squares of distances, in pitches: far above rounding, far below what a body gives way.
+/// The tolerance of squared distances, in pitches: far above rounding, far below what bodies yield.
 constexpr double kRounding = 1e-9;
 
-/// From 0 to a whole turn.
+/// The angle from 0 to a whole turn, rad.
 double turn(double angle) { return angle < 0 ? angle + 2 * std::numbers::pi : angle; }
 
 }  // namespace

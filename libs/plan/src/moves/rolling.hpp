@@ -13,12 +13,12 @@ namespace holdfast::plan {
 /// a ball that it touches, or about the line through the centres of two. It keeps touching them.
 class RollingArc {
  public:
-  /// About the centre of one ball, the shorter way; cells are axial, and both ends touch it. No
-  /// value for ends on opposite sides, between which all ways are as long.
+  /// The arc about the centre of one ball, the shorter way; cells are axial, and both ends touch
+  /// it. No value for ends on opposite sides, between which all ways are as long.
   static std::optional<RollingArc> about(const base::Lattice& lattice, const base::Cell& from,
                                          const base::Cell& to, const base::Cell& carrier);
 
-  /// About the line through two that both ends touch, from the first to the second: counted
+  /// The arc about the line through two that both ends touch, from the first to the second: counted
   /// clockwise for who looks that way. Exchanged, they give the other way round.
   static RollingArc about(const base::Lattice& lattice, const base::Cell& from,
                           const base::Cell& to, const base::Cell& first, const base::Cell& second);

@@ -22,8 +22,8 @@ using base::Cell;
 /// More moves than there are in any plan.
 constexpr int kNever = 1'000'000;
 
-/// Of more modules alike than this, each that is misplaced counts as one move: an assignment takes
-/// as long as their cube.
+/// The most modules alike that are assigned to cells, which takes as long as their cube; of more,
+/// each that is misplaced counts as one move.
 constexpr std::size_t kAssignedMax = 60;
 
 /// What makes modules alike.

@@ -18,7 +18,7 @@ namespace holdfast::plan {
 /// class are of one kind, mass and payload.
 using Shape = std::vector<base::Cell>;
 
-/// Only finds candidates for equality, so no result depends on it.
+/// The hash only finds candidates for equality, so no result depends on it.
 struct ShapeHash {
   std::size_t operator()(const Shape& shape) const;
 };

@@ -20,7 +20,7 @@ enum class SearchOutcome : std::uint8_t {
   kStopped,
 };
 
-/// From which end a search begins.
+/// The end from which a search begins.
 enum class End : std::uint8_t {
   kStart,
   kTarget,  ///< Backwards: to shapes from which a move leads to one that is known.
@@ -39,8 +39,8 @@ class ShapeSearch {
   /// or until no plan can have fewer moves than `length`, that of one that is known.
   SearchOutcome run(std::size_t count_max, int length = std::numeric_limits<int>::max());
 
-  /// From the start to the target if it is found. Else, and void backwards, to the shape that is
-  /// nearest to it, of all shapes seen.
+  /// The moves from the start to the target if it is found. Else, and void backwards, those to the
+  /// shape that is nearest to it, of all shapes seen.
   std::vector<model::Move> moves() const;
 
   /// The distance of that shape.

@@ -11,8 +11,8 @@ namespace {
 
 using base::Cell;
 
-/// So many places are tried for a module that is parked, and so many modules are parked one after
-/// another. More of either finds ways out of tighter corners, later.
+/// The most places that are tried for a module that is parked, and the most modules that are parked
+/// one after another. More of either finds ways out of tighter corners, later.
 constexpr std::size_t kParkingPlaceMax = 6;
 constexpr int kParkedMax = 3;
 

@@ -25,7 +25,7 @@ class SurfacePlanner {
   /// Whether the target was found. False if the attempt was given up or the judge said stop.
   bool run();
 
-  /// To the target, or to the nearest shape that was reached.
+  /// The moves to the target, or to the nearest shape that was reached.
   const std::vector<model::Move>& moves() const { return best_; }
 
   int distance() const { return distance_; }

@@ -14,7 +14,7 @@ namespace holdfast::plan {
 /// Where one module can get to along the surface of all others, which stay.
 class SurfaceWalk {
  public:
-  /// Which is asked whether a move is safe from a robot in which the module is where it begins.
+  /// Is asked whether a move is safe from a robot in which the module is where it begins.
   using IsSafe = std::function<bool(const RobotState&, const model::Move&)>;
 
   /// `from`: a loose module's cell.

@@ -21,8 +21,8 @@ using base::Vec6;
 /// Facets whose distances to the group differ by less than this share of a pitch are equally near.
 constexpr double kNearestTie = 1e-6;
 
-/// From a cell's node to where a module of the group is at a waypoint, in pitches. In whole numbers
-/// first, so that it does not depend on where the robot is.
+/// Leads from a cell's node to where a module of the group is at a waypoint, in pitches. It is made
+/// in whole numbers first, so that it does not depend on where the robot is.
 Vector3 place_from(const base::Lattice& lattice, const Cell& origin, const Cell& module,
                    const Cell& way) {
   const Cell between = difference(base::axial_of(lattice, module), base::axial_of(lattice, origin));
@@ -87,8 +87,8 @@ std::vector<Joint> nearest_joints(const RobotState& robot, const Group& group, s
   return joints;
 }
 
-/// By the law of the weaker connector, for the load in the middle between the two nodes of a
-/// connection (Eq. 16): tension is positive, z' points back to the carrier.
+/// The load ratio by the law of the weaker connector, for the load in the middle between the two
+/// nodes of a connection (Eq. 16): tension is positive, z' points back to the carrier.
 model::LimitRatio ratio_of(const RobotState& robot, const Group& group, std::size_t waypoint,
                            const Cell& carrier, const Joint& joint) {
   const base::Lattice& lattice = robot.lattice();

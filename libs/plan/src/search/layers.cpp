@@ -21,7 +21,7 @@ constexpr std::size_t kOpenMax = 64;
 /// Squares of lengths in pitches that differ by less are the same: rounding must not decide.
 constexpr double kTie = 1e-6;
 
-/// Horizontal, in pitches.
+/// A horizontal vector, in pitches.
 struct Offset {
   double x = 0;
   double y = 0;
@@ -52,7 +52,7 @@ std::vector<std::int64_t> distances_from(const model::Robot& robot,
   return distance;
 }
 
-/// By module of a layer.
+/// The offsets of a layer's modules, in its order.
 std::vector<Offset> offsets_from_middle(const model::Robot& robot,
                                         const std::vector<std::size_t>& layer) {
   std::vector<Offset> offsets;

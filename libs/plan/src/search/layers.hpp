@@ -13,7 +13,7 @@ namespace holdfast::plan {
 
 /// Where a module comes in the order in which a robot grows best: in layers about some modules.
 /// Those of a layer come outwards from its middle and from all sides in turns, so that the weights
-/// of any that follow each other have little moment about it: an uneven robot bears more.
+/// of any that follow each other have little moment about it: an uneven robot carries more.
 struct LayerPlace {
   std::int64_t layer = 0;  ///< Steps from the nearest source, through connections.
   std::int64_t in_layer = 0;
@@ -21,7 +21,7 @@ struct LayerPlace {
   auto operator<=>(const LayerPlace&) const = default;
 };
 
-/// By module. Those that hang on no source are the last layer.
+/// The places by module. Modules that are connected with no source are the last layer.
 std::vector<LayerPlace> places_in_layers(const model::Robot& robot,
                                          std::vector<std::size_t> sources);
 

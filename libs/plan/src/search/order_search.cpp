@@ -87,13 +87,13 @@ class Explorer {
     std::vector<Batch> groups = {};
   };
 
-  /// After kReached: to the goal.
+  /// The way to the goal, after kReached.
   Way way() const;
 
-  /// To the first of the states that are furthest; none if no root is safe.
+  /// The way to the first of the states that are furthest; none if no root is safe.
   std::optional<Way> furthest_way();
 
-  /// After kExhausted.
+  /// The proof that nothing is left to enter, after kExhausted.
   Closure closure() const;
 
  private:
@@ -156,7 +156,7 @@ void Explorer::enter(Batch group) {
   frames_.push_back({.group = std::move(group)});
 }
 
-/// Before the present way is left.
+/// Keeps the present way, before it is left, if it led further than the one that is kept.
 void Explorer::keep_way() {
   const bool is_further =
       sense_ == Sense::kGrowing ? state_.size() > kept_furthest_ : state_.size() < kept_furthest_;

@@ -40,7 +40,7 @@ std::vector<std::string_view> named(
   return names;
 }
 
-/// Force and torque; of none as of one of zero.
+/// The force and torque on a module; zero if it has no payload.
 auto load_of(const ModuleState& module) {
   const model::Payload payload = module.payload.value_or(model::Payload{});
   return std::pair(payload.force_n, payload.torque_nmm);

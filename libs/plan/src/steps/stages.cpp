@@ -166,7 +166,7 @@ std::vector<Scene> scenes_at(const RobotState& before, const Transition& transit
   return scenes;
 }
 
-/// More than kSceneMax if there are too many.
+/// The number of a stage's scenes; more than kSceneMax if there are too many.
 std::size_t scene_count(const Transition& transition) {
   std::size_t count = 0;
   for (std::size_t waypoint = 0; waypoint < transition.waypoint_count(); ++waypoint) {

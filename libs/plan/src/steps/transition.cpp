@@ -140,7 +140,7 @@ base::Result<Transition> find_ways(const RobotState& robot, const model::Step& s
   return transition;
 }
 
-/// Of modules that arrive and of pairs that are connected.
+/// What is wrong with modules that arrive and with pairs that are connected.
 Fault find_arrival_fault(const RobotState& robot, const model::Step& step,
                          const Transition& transition) {
   std::set<Cell> gone(transition.left.begin(), transition.left.end());

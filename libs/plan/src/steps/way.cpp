@@ -66,7 +66,7 @@ bool WayFinder::is_under_floor(const Cell& cell) const {
   return barring_floor(support_z, before_and_after).has_value();
 }
 
-/// Of modules that stay, of those that leave elsewhere, of obstacles, and of the floor.
+/// Whether a cell is free of modules that stay or move elsewhere, of obstacles, and of the floor.
 bool WayFinder::is_free(const Cell& cell, const Draft& draft) const {
   return (robot_.find(cell) == RobotState::kNone || draft.members.contains(cell) ||
           std::ranges::find(step_.detach, cell) != step_.detach.end()) &&

@@ -12,7 +12,7 @@
 
 namespace holdfast::plan {
 
-/// Between axial coordinates.
+/// The difference of axial coordinates.
 inline base::Cell difference(const base::Cell& a, const base::Cell& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
@@ -21,7 +21,7 @@ inline base::Cell sum(const base::Cell& a, const base::Cell& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
 
-/// To the neighbours of a cell, axial.
+/// The steps to the neighbours of a cell, axial.
 inline std::span<const base::Cell> steps_of(const base::Lattice& lattice) {
   return std::span(lattice.steps).first(base::at(lattice.direction_count));
 }

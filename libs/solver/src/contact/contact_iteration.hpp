@@ -25,8 +25,8 @@ class ContactIteration {
   /// Where a search that has not settled has come to, by module.
   virtual std::vector<Vec> last_displacement() { return system_.displacement(); }
 
-  /// Takes over the states that an earlier run's same search has come to, and from now on tells the
-  /// journal of those of this one. Without a journal does nothing.
+  /// Takes over the states that an earlier run's same search has come to, and from now on writes
+  /// those of this one into the journal. Without a journal does nothing.
   void go_on(const ContactOptions& contact);
 
  protected:
@@ -42,13 +42,13 @@ class ContactIteration {
   /// Who has the other parts of the robot; null: nobody.
   host::Ranks& ranks() const { return system_.robot().ranks(); }
 
-  /// Of the robot's modules those that are not copies of other ranks'.
+  /// The number of the robot's modules that are not copies of other ranks'.
   std::size_t own_count() const { return system_.robot().own_count(); }
 
   /// Solves for the present states.
   Outcome solve();
 
-  /// The same, well enough to look up the states that the exact solution prescribes.
+  /// Solves well enough to look up the states that the exact solution prescribes.
   Outcome solve_for_states();
 
   /// The states that the facets are in.
@@ -57,12 +57,12 @@ class ContactIteration {
   /// The states that the facets' displacements prescribe, both by facet.
   std::vector<mechanics::ContactState> states_at(const std::vector<Vec>& facets) const;
 
-  /// Those of the last solution.
+  /// The states that the last solution prescribes.
   std::vector<mechanics::ContactState> next_states() {
     return states_at(system_.facet_displacement());
   }
 
-  /// Of displacements by module those of the facets.
+  /// The facets' displacements among those by module.
   std::vector<Vec> at_facets(const std::vector<Vec>& displacement) const;
 
   /// Takes the last solution to the last digits, with more to come. Returns whether it has them.
@@ -74,8 +74,8 @@ class ContactIteration {
   /// Allows as much error as while states are sought.
   void loosen();
 
-  /// Once the states hold still: whether the solution is good enough to say so. If not, the next
-  /// one will be.
+  /// Whether the solution is good enough to say that the states hold still. If not, the next one
+  /// will be.
   bool is_tight_now();
 
  private:

@@ -58,7 +58,7 @@ constexpr std::size_t kElsewhere = std::numeric_limits<std::size_t>::max();
 }  // namespace
 
 /// Facets, by index, that may have a second state; lightest for their sideways force first, and one
-/// only of those that bear the same, as each other's mirror images do.
+/// only of those that carry the same, as each other's mirror images do.
 std::vector<std::size_t> RegularisedContact::doubtful_facets(const std::vector<Vec>& facets) const {
   const std::size_t here = base::at(ranks().rank());
   std::vector<Doubt> doubts;

@@ -28,8 +28,8 @@ class RegularisedContact final : public ContactIteration {
   std::vector<Solution> find_others(const Solution& settled);
 
   /// Seeks solutions by Newton's method from one facet that presses, all over, on an edge or on a
-  /// corner, and all others open: who falls hangs by one foot. Calls `take` for each, once, while
-  /// the system has its states.
+  /// corner, and all others open: a robot that falls is held by one foot. Calls `take` for each,
+  /// once, while the system has its states.
   void find_from_one_foot(const std::function<void(Solution)>& take);
 
   /// Tries all states of all facets, ten each. Calls `take` for each solution, while the system has

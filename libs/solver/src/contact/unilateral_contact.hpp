@@ -19,7 +19,7 @@ class UnilateralContact final : public ContactIteration {
 
   std::vector<Vec> last_displacement() override { return current_; }
 
-  /// After run(): open facets that are held sideways all the same, as they would close when
+  /// How many open facets are held sideways all the same after run(), as they would close when
   /// released.
   int open_but_held_count() const;
 

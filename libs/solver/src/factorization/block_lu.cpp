@@ -110,7 +110,7 @@ void BlockLu::set_symmetry(Symmetry symmetry) {
   }
 }
 
-/// Of L D it makes L, and U not yet divided by D, which is (L D)'.
+/// Makes L of L D, and U not yet divided by D, which is (L D)'.
 void BlockLu::make_upper() {
   upper_.resize(rows_.size());
   for (std::size_t k = 0; k < position_.size(); ++k) {
@@ -228,8 +228,8 @@ bool BlockLu::subtract_left(std::size_t k, base::Mat6<double>& pivot, const Wait
   return true;
 }
 
-/// The same where A is symmetric. A column's parent has all its rows below, so if it has as many
-/// from row k on, they are the same ones: such columns go together.
+/// Does what subtract_left() does where A is symmetric. A column's parent has all its rows below,
+/// so if it has as many from row k on, they are the same ones: such columns go together.
 template <class WaitFor>
 bool BlockLu::subtract_left_symmetric(std::size_t k, base::Mat6<double>& pivot,
                                       const WaitFor& wait_for, const Scratch& scratch) {

@@ -115,7 +115,7 @@ void DirectSystem::order(const EquilibriumOptions& options) {
               Symmetry::kSymmetric);
 }
 
-/// Everything but the contact.
+/// Assembles everything but the contact.
 void DirectSystem::assemble() {
   diagonal_ = set_connections();
   for (std::size_t node = 0; node < diagonal_.size(); ++node) {
@@ -197,7 +197,7 @@ void DirectSystem::take_facet(std::size_t facet) {
   lu_->set_diagonal(node, block);
 }
 
-/// From one vector per node to one per module; fixed modules get zero.
+/// Turns one vector per node into one per module; fixed modules get zero.
 std::vector<Vec6<double>> DirectSystem::by_module(const std::vector<Vec>& by_node) const {
   std::vector<Vec> vectors(node_of_module_.size(), Vec{});
   for (std::size_t i = 0; i < vectors.size(); ++i) {
@@ -208,7 +208,7 @@ std::vector<Vec6<double>> DirectSystem::by_module(const std::vector<Vec>& by_nod
   return vectors;
 }
 
-/// From loads by module to loads by node; those of fixed modules mean nothing.
+/// Turns loads by module into loads by node; those of fixed modules mean nothing.
 template <class Load>
 std::vector<Vec6<double>> DirectSystem::by_node(const Load& load) const {
   std::vector<Vec> vectors(diagonal_.size());
@@ -258,7 +258,7 @@ std::optional<std::vector<std::vector<Vec6<double>>>> DirectSystem::solve_each(
   return columns;
 }
 
-/// From loads to displacements, both by module, with the factors that are there.
+/// The displacements under loads, both by module, with the factors that are there.
 std::vector<Vec6<double>> DirectSystem::solve_for(const std::vector<Vec>& load) const {
   std::vector<Vec> x = by_node(load);
   lu_->solve(x);

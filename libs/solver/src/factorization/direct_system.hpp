@@ -17,8 +17,8 @@ namespace holdfast::solver {
 /// facet touches is factorized again.
 class DirectSystem final : public LinearSystem {
  public:
-  /// None if it needs more memory, or fills in more, than the options allow. The factors are
-  /// symmetric until a facet tilts under the regularised law.
+  /// Makes the system; none if it needs more memory, or fills in more, than the options allow. The
+  /// factors are symmetric until a facet tilts under the regularised law.
   static std::unique_ptr<DirectSystem> make(const model::Robot& robot,
                                             const EquilibriumOptions& options);
 

@@ -36,8 +36,8 @@ struct ColumnUpdate {
   std::size_t last = 0;
 };
 
-/// The same of a symmetric matrix, whose finished columns hold L D: for several of these at once
-/// that have the same rows from row k on.
+/// A ColumnUpdate of a symmetric matrix, whose finished columns hold L D: by several of these at
+/// once that have the same rows from row k on.
 struct SymmetricUpdate {
   /// Enough to keep what is subtracted from in registers, few enough that the last ones, which
   /// other threads may be at, are not long waited for.
@@ -63,7 +63,7 @@ struct FactorKernels {
   void (*subtract_product)(base::Mat6<double>& c, const base::Mat6<double>& a,
                            const base::Mat6<double>& b);
 
-  /// The same for `count` products, one after the other; to the same bits.
+  /// C -= A B for `count` products, one after the other; to the same bits.
   void (*subtract_products)(base::Mat6<double>& c, const base::Mat6<double>* const* a,
                             const base::Mat6<double>* const* b, std::size_t count);
 
@@ -82,7 +82,7 @@ struct FactorKernels {
   void (*update_symmetric)(const SymmetricUpdate& update);
 };
 
-/// Those for this machine.
+/// The kernels for this machine.
 const FactorKernels& factor_kernels();
 
 }  // namespace holdfast::solver

@@ -65,7 +65,7 @@ inline void store_six(double* to, const Six& value) {
 #ifdef __AVX512F__
 using Tall = Wide;
 
-/// Of what has lain there for a while: it is read in other pieces than it was written in.
+/// Loads what has lain there for a while: it is read in other pieces than it was written in.
 inline Tall load_tall(const double* from) {
   constexpr __mmask8 kSix = 0x3F;
   return _mm512_maskz_loadu_pd(kSix, from);

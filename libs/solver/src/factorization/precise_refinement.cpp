@@ -26,8 +26,8 @@ constexpr int kStepMax = 60;
 
 using PreciseVec = base::Vec6<DoubleDouble>;
 
-/// In 106 bits from the start: rounded to double the numbers of one beam would no longer fit
-/// together, and a beam that turns as a rigid body would resist.
+/// The section in 106 bits from the start: rounded to double the numbers of one beam would no
+/// longer fit together, and a beam that turns as a rigid body would resist.
 mechanics::BeamSection<DoubleDouble> precise_section(const model::Material& material) {
   const mechanics::BeamSection<double> section = model::beam_section(material);
   return {.elastic_modulus = section.elastic_modulus,

@@ -29,8 +29,8 @@ class PreciseRefinement {
   using Vec = base::Vec6<double>;
   using PreciseVec = base::Vec6<base::DoubleDouble>;
 
-  /// From loads, one per module in the robot's order, to the displacements that a solver of limited
-  /// accuracy finds for them, in place. Fixed modules' loads mean nothing.
+  /// Turns loads, one per module in the robot's order, into the displacements that a solver of
+  /// limited accuracy finds for them, in place. Fixed modules' loads mean nothing.
   using Solve = std::function<void(std::vector<Vec>& load)>;
 
   /// Refines solutions of a system, whose present facets and loads it takes. Keeps a reference to

@@ -181,7 +181,7 @@ class SelectedInverse::PanelMaker {
   using Blocks = std::vector<Square>;
   using List = std::vector<const Square*>;
 
-  /// Which of the rows the factors have.
+  /// Finds which of the rows the factors have.
   void find_ranks(std::span<const std::int32_t> factor_rows) {
     factor_row_count_ = factor_rows.size();
     ranks_before_.assign(1, 0);

@@ -31,7 +31,7 @@ using sim::Time;
 /// What goes wrong. Times are microseconds.
 struct Fault {
   enum class Kind : std::uint8_t {
-    kKill,    ///< The module has no power any more. It still hangs there.
+    kKill,    ///< The module has no power any more. It is still attached.
     kCut,     ///< The line at `face` carries nothing, both ways.
     kFlip,    ///< One bit of the next byte that comes in at `face` flips.
     kReset,   ///< The module starts again; its memory stays as it is.

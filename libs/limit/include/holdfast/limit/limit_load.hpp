@@ -15,12 +15,13 @@
 /// solved by an interior-point method. Derivation: docs/limit.md.
 namespace holdfast::limit {
 
-/// Factors beyond this are not told apart from none: known forces have about six digits.
+/// Factors beyond this are not distinguished from an infinite one: known forces have about six
+/// digits.
 inline constexpr double kFactorMax = 1e5;
 
 struct LimitOptions {
   double tolerance = 1e-6;  ///< Of the bracket, as a share of the factor.
-  /// Then the bracket is what it is so far; an iteration that has begun is ended.
+  /// The bracket is what it is so far when this time is over; an iteration that has begun is ended.
   double seconds_max = 600;
   int thread_count = 0;  ///< 0: as many as the machine has cores; decides nothing.
   /// Forces of all joints that balance the loads, such as the elastic ones, local frame; they spare

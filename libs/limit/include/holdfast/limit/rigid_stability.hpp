@@ -66,20 +66,22 @@ struct RigidStability {
   RigidAnswer answer = RigidAnswer::kUndecided;
   /// The largest share of the load that may be added as a force at the centre of mass along any
   /// axis, or, times `gyration_mm`, as a moment about any axis, before it moves; below 0: how far
-  /// the load is from what contacts can balance, as a share of it. None: bonded, pressed from all
+  /// the load is from what contacts can balance, as a share of it. None: bonded, clamped from all
   /// sides, or no load. Right within kMarginTie and 1e-8 of it, and above neither for what moves.
   std::optional<double> margin = {};
-  /// The smallest coefficient with which it holds at all contact facets, at the best pressing,
-  /// rounded up: with this one it holds, and one that is smaller by more than kFrictionAccuracy of
-  /// it does not balance the load. 0: none is needed to balance it. kFrictionLeast where less would
-  /// do, such as between two things that it can press apart. The elastic forces may take more.
-  /// None: none does, nobody asked for it, or nobody needs to as a facet is bonded.
+  /// The smallest coefficient with which it holds at all contact facets, for the best contact
+  /// forces, rounded up: with this one it holds, and one that is smaller by more than
+  /// kFrictionAccuracy of it does not balance the load. 0: none is needed to balance it.
+  /// kFrictionLeast where less would do, such as between two things that it can wedge apart. The
+  /// elastic forces may take more. None: none does, nobody asked for it, or nobody needs to as a
+  /// facet is bonded.
   std::optional<double> friction_needed = {};
   /// The smallest angle by which gravity can turn, in any direction, before it moves, rounded down
   /// by at most kTiltAccuracy of it; 0 where it does not hold as it is. None: it holds whatever the
   /// direction, there is no weight, or nobody asked for it.
   std::optional<double> tilt_margin_deg = {};
-  /// None where it holds, or nothing says in which direction it would go.
+  /// The first instant of the fall. None where the body holds, or where nothing says in which
+  /// direction it would go.
   std::optional<Motion> motion = {};
 
   bool holds() const { return answer == RigidAnswer::kHolds; }
@@ -93,7 +95,7 @@ inline constexpr double kMarginTie = 1e-9;
 inline constexpr double kFrictionAccuracy = 1e-3;
 inline constexpr double kTiltAccuracy = 2e-4;
 
-/// Coefficients of friction below this are not told from it, but for 0.
+/// Coefficients of friction below this are not distinguished from it, except 0.
 inline constexpr double kFrictionLeast = 1e-2;
 
 /// Coefficients of friction beyond this are not looked at.

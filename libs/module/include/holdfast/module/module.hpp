@@ -16,7 +16,7 @@
 ///
 /// A neighbour that is heard for the first time, or again after it was gone, is a link that comes
 /// up. One that is no longer heard is left to the agent's link: whether it has been taken off or
-/// has only failed cannot be told from here, and a module that still hangs there still weighs. So
+/// has only failed cannot be known here, and a module that is still attached still weighs. So
 /// the verdict is `undecided` then, never `safe`.
 namespace holdfast::module {
 
@@ -62,7 +62,8 @@ class Module {
   /// Does what there is to do, then waits for more.
   void run_once();
 
-  /// From outside: a module is planned at a cell, or no more; agent::kEveryCell withdraws all.
+  /// Takes word from outside that a module is planned at a cell, or no more; agent::kEveryCell
+  /// withdraws all.
   void plan(const base::Cell& cell) { tell(agent::EventKind::kPlan, cell); }
 
   void withdraw(const base::Cell& cell) { tell(agent::EventKind::kWithdraw, cell); }

@@ -16,10 +16,10 @@
 /// Where may the next module go? Every free cell beside a robot, judged as a check of the robot
 /// with a module there would, for far less than a check each.
 ///
-/// Most candidates are judged from one factorization of the robot without them (docs/next.md): a
-/// module with one neighbour is a load on it, one with several, or on the floor, is a change of low
-/// rank, and so is every facet that tilts or lifts; Newton's path over the contact states is that
-/// of the check. Where that is not certain to end as the check does, the check itself is made:
+/// Most candidates are judged from one factorization of the robot without them (docs/planning.md):
+/// a module with one neighbour is a load on it, one with several, or on the floor, is a change of
+/// low rank, and so is every facet that tilts or lifts; Newton's path over the contact states is
+/// that of the check. Where that is not certain to end as the check does, the check itself is made:
 /// supports anywhere whose forces decide stability, several solutions, the exact contact law, and a
 /// load ratio within kNearLimit of the limit. Of cells that are images of one another, as the
 /// robot is its own, one is judged.
@@ -35,8 +35,8 @@ std::vector<base::Cell> free_cells(const model::RobotSpec& spec);
 /// A robot with one more module.
 struct Candidate {
   base::Cell cell;
-  /// False if there is no such robot: the cell is taken, touches nothing, lies too low. The
-  /// judgement is void then.
+  /// Whether there is such a robot; not where the cell is taken, touches nothing or lies too low.
+  /// The judgement is void then.
   bool is_robot = false;
   Judgement judgement = {};
 };
@@ -85,7 +85,7 @@ class CandidateSearch {
   CandidateOptions options_;
   bool is_prepared_ = false;
   std::unique_ptr<const RobotSymmetry> symmetry_;
-  std::unique_ptr<CandidateJudge> judge_;  ///< None where only checks can tell.
+  std::unique_ptr<CandidateJudge> judge_;  ///< None where only checks decide.
 };
 
 /// All cells in one batch of a search.

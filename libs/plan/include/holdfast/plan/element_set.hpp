@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-/// Which elements of a structure are there: the state of one that grows or is taken apart.
+/// The elements of a structure that are there: the state of one that grows or is taken apart.
 namespace holdfast::plan {
 
 /// The index of an element: of a module in the target, of a bar in a frame.

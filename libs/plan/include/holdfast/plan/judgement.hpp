@@ -13,7 +13,7 @@ namespace holdfast::plan {
 
 struct Judgement {
   verdict::Verdict verdict = verdict::Verdict::kUndecided;
-  /// None for a robot that topples, which needs no loads, and where no load is known.
+  /// The largest load ratio; none for a robot that topples, and where no load is known.
   std::optional<double> load_ratio_max = {};
   /// What that does not exceed, errors included. Candidates have none.
   std::optional<double> load_ratio_high = {};

@@ -31,13 +31,13 @@ struct MoveTask {
 };
 
 struct MoveOptions {
-  /// The same seed finds the same plan. Others try moves in other orders.
+  /// Decides in which order moves are tried; the same seed finds the same plan.
   std::uint64_t seed = 0;
   /// The search stops after this time, or so many judged moves, without an answer.
   double seconds_max = std::numeric_limits<double>::infinity();
   std::size_t state_count_max = std::numeric_limits<std::size_t>::max();
-  /// So many moves, divided by the number of modules that are not fixed, are judged in search of a
-  /// shorter plan than the first that is found.
+  /// A search for a shorter plan than the first that is found judges so many moves, divided by the
+  /// number of modules that are not fixed.
   std::size_t exact_count_max = 40'000;
   solver::EquilibriumOptions solver = {};  ///< Of each check. The result depends on no threads.
   /// Asked between moves; true ends the search as time does.
@@ -59,7 +59,7 @@ const char* name(MoveOutcome outcome);
 /// Proves that there is no plan.
 struct MoveCertificate {
   MoveTask task;
-  /// Not safe: nothing more is to be proved, and `shapes` is empty.
+  /// The target's judgement if it is not safe: nothing more is to be proved, `shapes` is empty.
   std::optional<Judgement> target = {};
   /// Shapes, each as the cells of all modules that are not fixed, those alike together: the start
   /// is one of them, the target is none, and no safe step leads out.

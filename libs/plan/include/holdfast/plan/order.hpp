@@ -36,7 +36,7 @@ struct RobotOrderOptions {
   std::function<bool()> is_interrupted = {};
   Sense told_end = Sense::kGrowing;
   std::function<void(std::size_t states, std::size_t grown, std::size_t shrunk)> progress = {};
-  /// In the end solves every state on the way that a bound has certified, while there is time: then
+  /// Solves in the end every state on the way that a bound has certified, while there is time: then
   /// RobotOrder::load_ratio_max is the largest of all.
   bool is_exact = false;
   /// 0: as many as the machine has cores. The result does not depend on it.

@@ -12,7 +12,7 @@
 /// The least help with which a robot can be built that has no order.
 namespace holdfast::plan {
 
-/// Either of both, the other is empty.
+/// One of the two is empty.
 struct Help {
   std::vector<base::Cell> supports;   ///< Cells in which an obstacle would have to be.
   std::vector<base::Cell> temporary;  ///< Modules to attach on the way, and to detach at the end.

@@ -13,7 +13,7 @@
 #include "holdfast/plan/element_set.hpp"
 #include "holdfast/plan/judgement.hpp"
 
-/// In which order can a structure be built, or taken apart, so that every state on the way is safe?
+/// The order in which a structure can be built, or taken apart, with every state on the way safe.
 ///
 /// States are sets of elements. The search knows nothing of mechanics or geometry: what may come
 /// next and what is safe is asked of a GrowingStructure, so that robots of modules, printed frames
@@ -57,21 +57,21 @@ class GrowingStructure {
                                            std::span<const Element> run,
                                            const std::function<bool()>& is_late);
 
-  /// So many states at most are judged in one run.
+  /// The most states that are judged in one run.
   virtual std::size_t run_length_max() const { return 1; }
 };
 
 struct OrderOptions {
-  /// So many elements at most are added, or removed, at once; only the state after it must be safe.
+  /// The most elements that are added, or removed, at once; only the state after it must be safe.
   std::size_t group_size = 1;
-  /// The same seed finds the same order. Others try candidates in other orders.
+  /// Decides in which order candidates are tried; the same seed finds the same order.
   std::uint64_t seed = 0;
   /// The search stops after this time, or so many judged states, without an answer.
   double seconds_max = std::numeric_limits<double>::infinity();
   std::size_t state_count_max = std::numeric_limits<std::size_t>::max();
   /// Asked all the time, by several threads; the search stops once it says so.
   std::function<bool()> is_interrupted = {};
-  /// The end whose way is told if no order is found: from the start, or from the whole.
+  /// The end whose way is reported if no order is found: from the start, or from the whole.
   Sense told_end = Sense::kGrowing;
   /// Called now and then with the number of states judged so far, and how many elements the largest
   /// state reached from the start has, and how many the smallest reached from the whole.
@@ -98,7 +98,7 @@ struct Closure {
 };
 
 /// The order found; of kNotFound only the part of one that led furthest from the end that is to be
-/// told: from a start, or to the whole. It is empty if no state there is safe.
+/// reported: from a start, or to the whole. It is empty if no state there is safe.
 struct Order {
   OrderOutcome outcome = OrderOutcome::kNotFound;
   ElementSet start = {};                   ///< What the order begins with.

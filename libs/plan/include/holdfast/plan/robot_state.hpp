@@ -30,7 +30,7 @@ struct ModuleState {
   friend bool operator==(const ModuleState&, const ModuleState&) = default;
 };
 
-/// Adds a load to those that a module bears.
+/// Adds a load to those on a module.
 void add_payload(const model::Payload& payload, ModuleState& module);
 
 /// The modules of a robot, their cells, and which neighbours are not connected: a value, changed

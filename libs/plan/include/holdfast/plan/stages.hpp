@@ -9,11 +9,11 @@
 #include "holdfast/model/connector_law.hpp"
 #include "holdfast/plan/transition.hpp"
 
-/// The robots that a step's stages consist of, each to be judged by itself; what the stages are is
-/// told in docs/plan.md.
+/// The robots that a step's stages consist of, each to be judged by itself; docs/planning.md says
+/// what the stages are.
 namespace holdfast::plan {
 
-/// A group that hangs on one carrier alone.
+/// A group that one carrier supports alone.
 struct Hanging {
   base::Cell carrier;
   base::Cell module;  ///< Where the module that the carrier holds was before the step.
@@ -21,7 +21,7 @@ struct Hanging {
   double load_ratio = 0;  ///< Of the connection between the two, by weight and payload alone.
 };
 
-/// One moment of a stage, in which each group hangs on one of its carriers.
+/// One moment of a stage, in which one of its carriers supports each group.
 struct Scene {
   std::size_t waypoint = 0;       ///< Of Group::way; 0 in other stages than the shift.
   std::vector<Hanging> hangings;  ///< By group; empty in other stages than the shift.

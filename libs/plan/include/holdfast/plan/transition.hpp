@@ -25,7 +25,7 @@ const char* name(Stage stage);
 /// same way.
 ///
 /// A group goes to neighbouring cells (a slide), or over one cell between (a convex corner turn).
-/// It hangs on its carriers: those that its moves name, on its whole way; if they name none
+/// It is supported by its carriers: those that its moves name, on its whole way; if they name none
 /// - in a slide, every module that touches a moved one before and after, and every pair of modules
 ///   one behind the other in the direction of the move, the first of which touches it before and
 ///   the second after: the first carries it at the start, the second at the end, both between;

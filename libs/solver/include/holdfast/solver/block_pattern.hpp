@@ -27,7 +27,7 @@ struct BlockPattern {
   std::vector<std::int32_t> rows;         ///< rows below the diagonal, ascending in each column
 };
 
-/// None once L would need more than `block_count_max` blocks below the diagonal.
+/// The pattern of L; none once it would need more than `block_count_max` blocks below the diagonal.
 std::optional<BlockPattern> block_pattern(std::size_t node_count, std::span<const Edge> edges,
                                           std::size_t block_count_max);
 

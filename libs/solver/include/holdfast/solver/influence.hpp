@@ -27,8 +27,8 @@ class Influence {
  public:
   using Vec = base::Vec6<double>;
 
-  /// None if the factorization needs more memory, or fills in more, than the options allow, or
-  /// double precision does not suffice for the robot.
+  /// Factorizes a robot whose facets stick; none if that needs more memory, or fills in more, than
+  /// the options allow, or double precision does not suffice for the robot.
   static std::unique_ptr<Influence> make(const model::Robot& robot,
                                          const EquilibriumOptions& options);
   ~Influence();

@@ -241,7 +241,7 @@ class LinearSystem {
   virtual void take_changed_loads(const model::Loads& /*before*/) { take_loads(); }
 
   /// Weak springs are taken back in so many steps at most, as long as each is so much shorter than
-  /// the one before. A robot that stands without them takes two or three; where it hangs on them,
+  /// the one before. A robot that stands without them takes two or three; where they alone hold it,
   /// or nearly, steps do not become shorter.
   static constexpr int kTakeBackMax = 20;
   static constexpr double kTakeBackPace = 0.7;

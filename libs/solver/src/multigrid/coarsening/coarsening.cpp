@@ -163,7 +163,7 @@ class Coarsening {
     leave_alone();
   }
 
-  /// Enough for a level of its own.
+  /// Whether a tenth of the nodes is gone, enough for a level of its own.
   bool has_merged() const {
     return 10 * host::total(fine_.ranks, cluster_count_) <=
            9 * host::total(fine_.ranks, fine_.own_count());
@@ -346,7 +346,7 @@ class Coarsening {
     }
   }
 
-  /// From the order along the curve to the order by colours.
+  /// Changes from the order along the curve to the order by colours.
   void renumber(unsigned shift) {
     coarse_.order = final_;
     coarse_.key.resize(cluster_count_);

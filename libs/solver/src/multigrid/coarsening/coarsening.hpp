@@ -9,7 +9,7 @@
 #include "multigrid/coarsening/level.hpp"
 #include "multigrid/coarsening/spring_graph.hpp"
 
-/// From one level to the next coarser one, by aggregation: nodes close together become one.
+/// Coarsening from one level to the next by aggregation: nodes close together become one.
 namespace holdfast::solver {
 
 using host::Team;

@@ -38,7 +38,7 @@ class Eliminator {
     result_.is_gone.assign(robot.modules().size(), 0);
   }
 
-  /// By module; nothing else is done.
+  /// The axis of each module's passage; nothing else is done.
   std::vector<std::int8_t> passages() {
     count_connections();
     take_hanging();
@@ -81,7 +81,7 @@ class Eliminator {
                                             robot_.modules()[at(other)].support == Support::kFixed);
   }
 
-  /// Leaves first, until none is left.
+  /// Eliminates leaves until none is left.
   void take_hanging() {
     result_.round_start = {0};
     for (std::size_t leaf = 0; leaf < own_count_; ++leaf) {
@@ -90,7 +90,7 @@ class Eliminator {
     take_hanging_on_ranks();
   }
 
-  /// From a leaf on, as long as what it hung on is one then, and this rank's own.
+  /// Eliminates from a leaf on, as long as its host is one then, and this rank's own.
   void take_branch(std::size_t leaf) {
     while (leaf < own_count_ && result_.is_gone[leaf] == 0 && is_free(leaf) && degree_[leaf] == 1) {
       std::size_t direction = 0;
@@ -101,7 +101,7 @@ class Eliminator {
     }
   }
 
-  /// Eliminates a module; returns what it hangs on.
+  /// Eliminates a module; returns its host, the only one that it is connected to.
   std::size_t hang(std::size_t module, std::size_t direction) {
     const std::size_t host = next(module, direction);
     result_.is_gone[module] = 1;
@@ -111,9 +111,9 @@ class Eliminator {
     return host;
   }
 
-  /// Trees that cross ranks: each tells the others which of its modules hang, and in what
-  /// direction; what other ranks' modules hang on may then be a leaf itself. A round ends when all
-  /// ranks have taken what they can.
+  /// Trees that cross ranks: each sends the others which of its modules have gone, and in what
+  /// direction their hosts are; these may then be leaves themselves. A round ends when all ranks
+  /// have taken what they can.
   void take_hanging_on_ranks() {
     std::vector<std::uint8_t> way(degree_.size(), kNoWay);
     bool is_any_new = host::any(robot_.ranks(), !result_.hanging.empty());
@@ -128,7 +128,7 @@ class Eliminator {
   }
 
   /// Takes the copies that have newly gone, then what they leave as leaves. Returns whether some
-  /// hang on modules of this rank.
+  /// have hosts of this rank.
   bool take_copies(const std::vector<std::uint8_t>& way) {
     const bool is_last = result_.round_start.size() > kRoundMax;
     std::vector<std::size_t> hosts;
@@ -203,8 +203,8 @@ class Eliminator {
     return length;
   }
 
-  /// From a module back along its run, as far as it is this rank's own. Returns whether anything is
-  /// new.
+  /// Measures from a module back along its run, as far as it is this rank's own. Returns whether
+  /// anything is new.
   bool measure_back(std::size_t module, int length, std::size_t side,
                     const std::vector<std::int8_t>& axis, std::vector<std::uint8_t>& known) const {
     bool is_any_new = false;
@@ -273,7 +273,7 @@ class Eliminator {
     }
   }
 
-  /// From an end in a direction of even index to the other end, in beams of at most kBeamLengthMax.
+  /// Joins an end in a direction of even index to the other end by beams of at most kBeamLengthMax.
   void take_run(std::size_t from, std::size_t direction, const std::vector<std::int8_t>& axis) {
     bool is_at_end = false;
     while (!is_at_end) {

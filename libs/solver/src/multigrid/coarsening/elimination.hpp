@@ -10,11 +10,10 @@
 
 namespace holdfast::solver {
 
-/// A module that hangs on one connection. Of a part of a robot it, or what it hangs on, may be a
-/// copy.
+/// A module with one connection, to its host. Of a part of a robot it, or its host, may be a copy.
 struct HangingModule {
   std::int32_t module = 0;
-  std::uint8_t direction = 0;  ///< To what it hangs on.
+  std::uint8_t direction = 0;  ///< To its host.
 };
 
 /// A straight run of modules between two others.
@@ -24,7 +23,7 @@ struct Run {
   std::int32_t length = 0;     ///< Pitches to the module after the last.
 };
 
-/// Which modules of a robot need not be nodes: those of hanging trees, and those inside straight
+/// The modules of a robot that need not be nodes: those of hanging trees, and those inside straight
 /// runs, that is, with two connections each that lie opposite.
 struct Elimination {
   std::vector<std::uint8_t> is_gone;  ///< By module: eliminated, or fixed.
@@ -32,8 +31,8 @@ struct Elimination {
   /// empty if nothing is eliminated, and there are no copies.
   std::vector<std::uint8_t> run_axis;
   std::vector<HangingModule> hanging;  ///< In the order of elimination.
-  /// Where each round of all ranks begins in `hanging`, then its end. Before a round they tell each
-  /// other what has gone. As many at all of them; without ranks one, or none if nothing hangs.
+  /// Where each round of all ranks begins in `hanging`, then its end. Before a round they exchange
+  /// what has gone. As many at all of them; without ranks one, or none if `hanging` is empty.
   std::vector<std::size_t> round_start;
   std::vector<Run> runs;
 
@@ -42,8 +41,8 @@ struct Elimination {
   bool is_empty() const { return run_axis.empty(); }
 };
 
-/// Of a part of a robot runs are eliminated across ranks, by all that have some of their modules,
-/// as far as all of these are here (passages.hpp); hanging trees across ranks by turns.
+/// Finds the elimination. Runs of a part of a robot are eliminated across ranks, by all that have
+/// some of their modules, as far as all of these are here (passages.hpp); hanging trees by turns.
 Elimination eliminate(const model::Robot& robot, host::Team& team);
 
 }  // namespace holdfast::solver

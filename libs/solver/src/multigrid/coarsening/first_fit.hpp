@@ -35,7 +35,7 @@ class FirstFit {
   FirstFit(const Items& items, host::Ranks& ranks, host::Team& team)
       : items_(items), ranks_(ranks), team_(team), colours_(items.place_count(), kNoColour) {}
 
-  /// By place; those of copies do not count.
+  /// The colours by place; those of copies do not count.
   std::vector<std::uint8_t> find() {
     if (ranks_.is_shared()) {
       colour_on_ranks();

@@ -9,7 +9,7 @@
 #include "multigrid/coarsening/level.hpp"
 #include "multigrid/coarsening/spring_graph.hpp"
 
-/// From a level of which each rank has a part to one that all ranks have whole.
+/// Makes of a level of which each rank has a part one that all ranks have whole.
 namespace holdfast::solver {
 
 /// Levels of so many nodes are gathered: that costs a few messages and, at each rank, what a tenth

@@ -47,7 +47,7 @@ inline std::uint8_t contact_number(const mechanics::ContactState& state, bool is
                                             : 1 + 2 * state.code() + (is_held_sideways ? 1 : 0));
 }
 
-/// Those of the nodes themselves, ascending by node; each is made when it is asked for.
+/// The nodes' ground springs, ascending by node; each is made when it is asked for.
 class FinestGroundSprings {
  public:
   /// Keeps references to the network and to the table of what facets are.
@@ -74,8 +74,8 @@ class FinestGroundSprings {
   std::vector<BeamSpring> beams_;
 };
 
-/// Those of the next level's clusters, ascending by node: sums over the members, lengthened like
-/// springs as far as they are beams. `seat` says where the members sit.
+/// The ground springs of the next level's clusters, ascending by node: sums over the members,
+/// lengthened like springs as far as they are beams. `seat` says where the members sit.
 template <class Springs, class Real>
 std::vector<GroundSpring> coarse_ground_springs(const Springs& fine, const Seats<Real>& seat);
 

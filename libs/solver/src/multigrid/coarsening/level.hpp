@@ -71,7 +71,7 @@ struct Stencil {
   }
 };
 
-/// How a level that all ranks have whole, and compute alike, hangs together with the one below, of
+/// How a level that all ranks have whole, and compute alike, is connected with the one below, of
 /// which each has a part.
 struct Gathering {
   std::vector<std::int32_t> node;  ///< Of all ranks' clusters, in the order of the ranks.
@@ -88,7 +88,7 @@ struct Level {
   std::size_t place_count = 0;  ///< With the copies of other ranks', which come after them.
   /// Keeps these up to date.
   std::unique_ptr<host::Halo> halo = std::make_unique<host::NoCopies>();
-  /// The same for those of one colour; empty if there are none.
+  /// The halos of one colour each; empty if there are none.
   std::vector<std::unique_ptr<host::Halo>> halo_of_colour;
   Gathering gathering;  ///< If all ranks have all of this level.
   std::vector<std::size_t> colour_start;

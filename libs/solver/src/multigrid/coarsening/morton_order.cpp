@@ -53,7 +53,7 @@ struct Extent {
   }
 };
 
-/// Whether a basis vector leans over by half a step along x or y.
+/// Whether a basis vector is oblique, by half a step along x or y.
 bool leans(const base::Lattice& lattice, std::size_t basis, std::size_t axis) {
   return lattice.basis_squares[basis][axis] == 0.25;
 }
@@ -133,7 +133,7 @@ class RadixSort {
     });
   }
 
-  /// From how many items a block has of a digit to where it puts the first of them.
+  /// Turns how many items a block has of a digit into where it puts the first of them.
   void place() {
     std::size_t next = 0;
     for (std::size_t i = 0; i < kDigitCount; ++i) {

@@ -10,14 +10,14 @@
 
 namespace holdfast::solver {
 
-/// The rows, columns and layers of a lattice as bricks are laid: every other row or layer that
-/// leans over by half a step lies half a brick aside. So a box of bricks is a box in space, but for
-/// its rough sides, while one of axial cells leans. In a cubic lattice both are the same.
+/// The rows, columns and layers of a lattice as bricks are laid: every other row or layer of an
+/// oblique basis vector lies half a brick aside. So a box of bricks is a box in space, but for its
+/// rough sides, while one of axial cells is oblique. In a cubic lattice both are the same.
 base::Cell brick_of(const base::Lattice& lattice, const base::Cell& axial);
 base::Cell axial_of_brick(const base::Lattice& lattice, const base::Cell& brick);
 
 /// A colour, below 4, that no neighbour has: bricks of one row alternate, and so do rows or layers
-/// that lean over. In a cubic lattice, where none do, there are two.
+/// of oblique basis vectors. In a cubic lattice, where there are none, there are two.
 std::uint8_t colour_of_brick(const base::Lattice& lattice, const base::Cell& brick);
 
 /// A module, and the Morton key of its brick from the robot's lowest corner on: the bits of x, y

@@ -124,13 +124,13 @@ class Builder {
 
     bool has_two_colours() const { return is_along_axes(); }
 
-    /// Not of cubes, to which first fit gives two; of all others the lattice's own, of which there
-    /// are four, if no long beam has brought it there.
+    /// The lattice's own colour, of which there are four, unless a long beam leads to the same one;
+    /// cubes, to which first fit gives two, prefer none.
     std::uint8_t preferred(std::size_t item) const {
       return is_along_axes() ? kNoColour : chessboard(item);
     }
 
-    /// Of what its beams lead to, that comes before a module which has the lower coordinates.
+    /// Whether a neighbour comes before an item: the one with the lower coordinates does.
     bool is_before(std::size_t place, std::size_t item) const {
       return sum(place) < sum(at(module(item)));
     }
@@ -249,7 +249,7 @@ class Builder {
     }
   }
 
-  /// Whose copies those nodes are that are not this rank's own.
+  /// Finds whose copies those nodes are that are not this rank's own.
   void copy() {
     if (!robot_.ranks().is_shared()) {
       return;

@@ -53,8 +53,8 @@ void for_ties(const SpringGraph& fine, const std::vector<std::int32_t>& cluster,
 
 using Ties = std::vector<std::pair<std::int32_t, double>>;
 
-/// For each cluster those neighbours that it would fit into one cell with, and how strongly they
-/// are tied to it.
+/// The neighbours of each cluster that it would fit into one cell with, and how strongly they are
+/// tied to it.
 std::vector<Ties> ties_that_fit(const SpringGraph& fine, std::int32_t width,
                                 const std::vector<std::int32_t>& cluster,
                                 const std::vector<CellBox>& box) {

@@ -39,7 +39,7 @@ struct Spring {
   Mat stiffness = {};    ///< At the node.
 };
 
-/// The same in less memory: of the stiffness, which is symmetric, one half.
+/// A spring in less memory: of the stiffness, which is symmetric, one half.
 struct PackedSpring {
   PackedSpring() = default;
 
@@ -62,7 +62,7 @@ struct PackedSpring {
 Spring beam_spring(const base::Lattice& lattice, const model::Material& material,
                    std::size_t direction, std::size_t length);
 
-/// From the centre of its cluster to a node, mm.
+/// The vector from the centre of its cluster to a node, mm.
 template <class Real>
 Point offset(const Seat<Real>& seat) {
   return {static_cast<double>(seat.offset[0]), static_cast<double>(seat.offset[1]),

@@ -17,15 +17,15 @@ constexpr int kSweepCount = 2;
 /// An error so far below the one sought, both squared, may be rounding, which no step improves.
 constexpr double kRounding = 0.01;
 
-/// From so many nodes on K p, which processors' caches no longer hold, is not kept but made where
-/// it is needed. In solids of cubes, whose neighbours are found quickly, that takes a twentieth of
-/// the time of a check; in shells and in other lattices an eighth.
+/// K p of so many nodes or more, which processors' caches no longer hold, is not kept but made
+/// where it is needed. In solids of cubes, whose neighbours are found quickly, that takes a
+/// twentieth of the time of a check; in shells and in other lattices an eighth.
 constexpr std::size_t kKeptProductMax = std::size_t{1} << 14U;
 
 /// A solid is what has more neighbours than this on average.
 constexpr double kSolidDegree = 5;
 
-/// After so many iterations that gained nothing only rounding is left.
+/// Only rounding is left after so many iterations that gained nothing.
 constexpr int kPatience = 50;
 
 bool is_solid(const ReducedNetwork& network) {
@@ -114,7 +114,7 @@ std::vector<double> ConjugateGradients<Real>::marked() {
   return marked;
 }
 
-/// But for what marked() needs.
+/// Drops the direction but for what marked() needs.
 template <class Real>
 void ConjugateGradients<Real>::drop_direction() {
   if (!last_step_) {
@@ -190,13 +190,13 @@ double ConjugateGradients<Real>::run_cycle() {
   return cycle_.run(r());
 }
 
-/// The same; returns r . z.
+/// z = M^-1 r; returns r . z.
 template <class Real>
 double ConjugateGradients<Real>::precondition() {
   return sum(run_cycle());
 }
 
-/// The same; returns q . z as well.
+/// z = M^-1 r; returns r . z and q . z.
 template <class Real>
 std::array<double, 2> ConjugateGradients<Real>::precondition_and_compare() {
   const double error = run_cycle();
@@ -353,7 +353,7 @@ bool ConjugateGradients<Real>::step() {
   return true;
 }
 
-/// Not where what has been gained since a mark takes memory.
+/// Whether K p is kept; not where what has been gained since a mark takes memory.
 template <class Real>
 bool ConjugateGradients<Real>::is_product_kept() const {
   const bool is_large = node_count_ > kKeptProductMax;
@@ -376,7 +376,7 @@ std::array<double, 2> ConjugateGradients<Real>::compare(std::span<const Six<Real
   return sum;
 }
 
-/// The same in other words: K p is made twice and kept nowhere.
+/// One iteration in which K p is made twice and kept nowhere.
 template <class Real>
 bool ConjugateGradients<Real>::go_on_without_product() {
   q_ = std::vector<double>();
@@ -455,8 +455,8 @@ void ConjugateGradients<Real>::turn_from_last_direction() {
                           hierarchy_.levels().front().z.data(), {0, node_count_});
 }
 
-/// The same by another method that the ranks have: K d = r, x += d. Its estimate of the error is
-/// that of its preconditioner; where that is not the cycle it goes on until the cycle agrees.
+/// Runs another method that the ranks have: K d = r, x += d. Its estimate of the error is that of
+/// its preconditioner; where that is not the cycle it goes on until the cycle agrees.
 template <class Real>
 Iteration::End ConjugateGradients<Real>::run_by_another(const Goal& goal, host::KrylovTask& task) {
   constexpr int kRoundMax = 5;

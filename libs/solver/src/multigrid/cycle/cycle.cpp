@@ -82,7 +82,7 @@ typename Cycle<Real>::Vector Cycle<Real>::passed_down(std::size_t depth) {
   return coarse.gathering.is_empty() ? coarse.r : Vector(coarse.part);
 }
 
-/// If the level is gathered: the forces on all ranks' clusters.
+/// Gathers the forces on all ranks' clusters, if the level is gathered.
 template <class Real>
 void Cycle<Real>::gather_forces(std::size_t depth) {
   Level<Real>& coarse = hierarchy_.levels()[depth];

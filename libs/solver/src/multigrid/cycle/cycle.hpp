@@ -20,7 +20,7 @@ class Cycle {
   Cycle(Hierarchy<Real>& hierarchy, Team& team, int sweep_count)
       : hierarchy_(hierarchy), team_(team), sweep_count_(sweep_count) {}
 
-  /// From the finest level's r to its z, in the hierarchy's vectors, which must be there. Returns
+  /// Finds the finest level's z of its r, in the hierarchy's vectors, which must be there. Returns
   /// this rank's part of r . z, with an r that may have further digits.
   double run(SplitView<Real> r);
 

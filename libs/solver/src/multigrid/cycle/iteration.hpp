@@ -54,11 +54,11 @@ class Iteration {
     int iteration_count_max = 0;
   };
 
-  /// After begin(), or to go on with another goal: improves x.
+  /// Improves x after begin(), or to go on with another goal.
   virtual End run(const Goal& goal) = 0;
 
-  /// After begin(), and before the next: one step of run(). Returns false, and leaves x as it is,
-  /// if there is none to make.
+  /// Makes one step of run() after begin(), and before the next. Returns false, and leaves x as it
+  /// is, if there is none to make.
   virtual bool step() = 0;
 
   /// Does what run() does for a matrix A that is not symmetric, by orthogonalization [Saad 1981].
@@ -72,7 +72,7 @@ class Iteration {
   /// M^-1 r at a node: about what x is still off by there. After begin() or run().
   virtual base::Vec6<double> correction(std::size_t node) = 0;
 
-  /// From now on marked() says what x is now. That costs memory from the second iteration on.
+  /// Has marked() say what x is now. That costs memory from the second iteration on.
   virtual void mark() = 0;
 
   /// What x was when mark() was called, once, after rest() or retire().

@@ -24,7 +24,7 @@ constexpr int kIterationMax = 500;
 constexpr std::size_t kBytesPerModule = 360;
 constexpr std::size_t kBytesPerModuleDouble = 420;
 
-/// And for each direction that a lattice has beyond six: a ball of 25,000 face-centred modules
+/// Memory for each direction that a lattice has beyond six: a ball of 25,000 face-centred modules
 /// takes 380 bytes a module, larger ones less.
 constexpr std::size_t kBytesPerDirection = 10;
 constexpr std::size_t kBytesPerDirectionDouble = 60;
@@ -37,18 +37,18 @@ constexpr std::size_t kBytesPerDirectionDouble = 60;
 /// that is sent on wrongly takes twice as long.
 constexpr double kRoundingShare = 0.15;
 
-/// So small a network is solved on its coarsest level, in double precision anyway.
+/// A network of so few nodes is solved on its coarsest level, in double precision anyway.
 constexpr std::size_t kTrivialCount = 48;
 
-/// So many facets may stay out of all clusters, one of so many nodes: the coarsest level then has
-/// them all, and is factorized anew after each change. A foot of a portal has 16.
+/// The most facets that may stay out of all clusters, one of so many nodes: the coarsest level then
+/// has them all, and is factorized anew after each change. A foot of a portal has 16.
 constexpr std::size_t kAloneMax = 128;
 constexpr std::size_t kAloneShare = 64;
 
-/// And where the robot is, on average over its length, so many times as wide as all facets together
-/// none do: it is no robot on its legs then, and can tilt on its feet as little as in its middle. A
-/// ball of a million face-centred modules, on 121 of them and 50 times as wide, takes 9 iterations
-/// instead of 21. (Not asked of cubes, whose portals on legs are at 1 and growth anywhere.)
+/// All facets join clusters where the robot is, on average over its length, so many times as wide
+/// as they are together: it is no robot on its legs then, and can tilt on its feet as little as in
+/// its middle. A ball of a million face-centred modules, on 121 of them and 50 times as wide, takes
+/// 9 iterations instead of 21. (Not for cubes, whose portals on legs are at 1 and growth anywhere.)
 constexpr double kWidthMax = 8;
 
 /// What counts as thin: plates one module thick and solids have four neighbours a node and more,
@@ -68,7 +68,7 @@ constexpr double kBriskIterations = 8;
 /// energy is that of a sag that is found first. Without it a bridge of 41,600 is off by 2e-4.
 constexpr double kSlenderShare = 0.3;
 
-/// In a thin robot one beam may have most of the error's energy. So that energy must not be able to
+/// One beam may have most of the error's energy in a thin robot. So that energy must not be able to
 /// change a load ratio by more than this times the tolerance; the estimate of the energy is low by
 /// a third once in a while.
 constexpr double kThinError = 2;
@@ -614,7 +614,7 @@ std::vector<base::Vec6<double>> Multigrid::facet_displacement() {
   return by_facet;
 }
 
-/// From nodes' displacements to those of all modules.
+/// Turns nodes' displacements into those of all modules.
 std::vector<base::Vec6<double>> Multigrid::by_module(std::vector<double>& x) {
   std::vector<Vec> all(robot().modules().size());
   if (!x.empty()) {

@@ -18,7 +18,7 @@ namespace holdfast::solver {
 /// gradients, multigrid preconditioner.
 class Multigrid final : public LinearSystem {
  public:
-  /// None if it needs more memory than the options allow.
+  /// Makes the system; none if it needs more memory than the options allow.
   static std::unique_ptr<Multigrid> make(const model::Robot& robot,
                                          const EquilibriumOptions& options);
 

@@ -82,7 +82,7 @@ Iteration::End ConjugateGradients<Real>::run_unsymmetric(const Goal& goal,
                                    : run_by_all_directions(goal, terms, direction_count);
 }
 
-/// Also where the estimate of the error fell by chance.
+/// Whether the goal is reached, and not by an estimate of the error that fell by chance.
 template <class Real>
 bool ConjugateGradients<Real>::is_still_reached(const Goal& goal, int iteration, double before) {
   return is_reached(goal, iteration) && std::abs(before) <= kFallMax * goal.error;

@@ -100,7 +100,7 @@ void apply_flexibility(const RunFactor& factor, std::span<Vec6<double>> load) {
   }
 }
 
-/// Does so for one run, by module. Most runs carry nothing but the common load, and bend alike.
+/// Applies the flexibility of one run. Most runs carry nothing but the common load, and bend alike.
 void apply_flexibility(const Robot& robot, const Run& run, const RunFactor& factor,
                        std::vector<Vec6<double>>& load) {
   std::array<std::size_t, kBeamLengthMax> modules{};
@@ -157,7 +157,7 @@ RunFactors factorize_runs(const ReducedNetwork& network, const model::LatticeBea
 }
 
 /// Turns the loads of all eliminated modules into displacements while the ends of their run, or
-/// what they hang on, are held.
+/// their hosts, are held.
 void apply_flexibilities(const Robot& robot, const ReducedNetwork& network, Team& team,
                          const Vec6<double>& common, std::vector<Vec6<double>>& load) {
   const auto beam = long_beam(robot.material(), robot.lattice(), 1);
@@ -202,13 +202,13 @@ void update(host::Halo& copies, std::vector<Vec6<double>>& by_module) {
   copies.update(by_module.data(), sizeof(Vec6<double>));
 }
 
-/// The modules that hang on a network which go in one round, in the order of elimination.
+/// The modules of a network's hanging trees which go in one round, in the order of elimination.
 std::span<const HangingModule> round_of(const ReducedNetwork& network, std::size_t round) {
   const std::size_t begin = network.round_start[round];
   return std::span(network.hanging).subspan(begin, network.round_start[round + 1] - begin);
 }
 
-/// Moves hanging modules with what they hang on, as one rigid body, and by what their loads do.
+/// Moves hanging modules with their hosts, as one rigid body, and by what their loads do.
 void recover_hanging(const Robot& robot, const Ways& ways, std::span<const HangingModule> hanging,
                      const model::Loads& loads, const CondensedLoads& condensed,
                      std::vector<Vec6<double>>& displacement) {

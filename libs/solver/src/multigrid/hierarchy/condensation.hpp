@@ -31,7 +31,7 @@ class CondensedLoads {
 
   CondensedLoads() = default;
 
-  /// Of loads by module those that differ from the robot's `own`.
+  /// Keeps of loads by module those that differ from the robot's `own`.
   CondensedLoads(const std::vector<Load>& loads, const model::Loads& own);
 
   /// The load of a module; `own` are the same robot's as before.
@@ -56,14 +56,14 @@ class CondensedLoads {
 };
 
 /// The loads on a reduced network, by module: of nodes f_n - K_ne K_ee^-1 f_e, of eliminated
-/// modules K_ee^-1 f_e, how far the loads move them while their run's ends, or what they hang on,
+/// modules K_ee^-1 f_e, how far the loads move them while their run's ends, or their hosts,
 /// are held. Of a part of a robot `copies` keeps those of modules up to date: a tree that crosses
 /// ranks hands its load on round by round, from the leaves on.
 CondensedLoads condense(const model::Robot& robot, const ReducedNetwork& network, host::Team& team,
                         const model::Loads& loads, host::Halo& copies);
 
 /// Fills in the displacements of eliminated modules, those of nodes being given, by module; with
-/// the loads that condense() made of `loads`. Across ranks from what trees hang on to their leaves.
+/// the loads that condense() made of `loads`. Across ranks from the roots of trees to their leaves.
 void recover(const model::Robot& robot, const ReducedNetwork& network, host::Team& team,
              const model::Loads& loads, const CondensedLoads& condensed,
              std::vector<base::Vec6<double>>& displacement, host::Halo& copies);

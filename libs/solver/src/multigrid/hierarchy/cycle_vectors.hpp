@@ -12,7 +12,7 @@
 
 namespace holdfast::solver {
 
-/// Hands out parts of memory that is lent to it, and beyond that memory of its own.
+/// Hands out parts of memory that is given to it, and beyond that memory of its own.
 template <class Item>
 class Shelf {
  public:

@@ -300,7 +300,7 @@ void Hierarchy<Real>::share(const SpringGraph& graph, Level<Real>& level) const 
   }
 }
 
-/// Makes a level whole at all ranks. What it hangs on stays in parts.
+/// Makes a level whole at all ranks. The finer ones stay in parts.
 template <class Real>
 void Hierarchy<Real>::gather(SpringGraph& graph, std::vector<GroundSpring>& springs,
                              std::vector<std::size_t>& colour_start) {
@@ -404,7 +404,7 @@ void Hierarchy<Real>::update_contact() {
   }
 }
 
-/// If its shape allows, or it is small.
+/// Factorizes a level if its shape allows, or it is small.
 template <class Real>
 void Hierarchy<Real>::try_to_factor(const SpringGraph& graph) {
   const std::size_t count = graph.order.size();

@@ -63,7 +63,7 @@ class Hierarchy {
     levels_[depth].halo->update(items.data(), sizeof(Item));
   }
 
-  /// The same where only nodes of one colour have changed.
+  /// Gives copies of one colour what their originals have.
   template <class Item>
   void update_copies(std::size_t depth, std::size_t colour, std::span<Item> items) {
     if (!levels_[depth].halo_of_colour.empty()) {
@@ -87,7 +87,7 @@ class Hierarchy {
     return kernels<Real>().advance_finest(levels_.front().view(), step, p, x, r, range);
   }
 
-  /// False if the finest level is the only one, or clusters stopped growing early.
+  /// Whether there are more levels than the finest, and clusters did not stop growing early.
   bool has_coarsest() const { return coarsest_.has_value(); }
 
   /// Whether a level was found that is a chain of thousands of clusters.
@@ -146,7 +146,7 @@ class Hierarchy {
   const model::Material& material_;
   const GroundTable& ground_;
   std::size_t alone_count_ = 0;  ///< Of all ranks.
-  /// From here on levels are whole at all ranks.
+  /// Levels are whole at all ranks from here on.
   std::size_t gathered_depth_ = std::numeric_limits<std::size_t>::max();
   std::vector<Level<Real>> levels_;
   CycleVectors<Real> vectors_;

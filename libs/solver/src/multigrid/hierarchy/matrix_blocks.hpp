@@ -7,13 +7,13 @@
 #include "multigrid/coarsening/springs.hpp"
 #include "multigrid/kernels/kernels.hpp"
 
-/// From matrices to what the kernels read.
+/// Turns matrices into what the kernels read.
 namespace holdfast::solver {
 
 /// The row of a table of beams: one entry for each length.
 inline constexpr std::size_t kRow = kBeamLengthMax + 1;
 
-/// Which displacement bends with which on a beam along an axis; see lanes.hpp.
+/// The displacement that each one bends with on a beam along an axis; see lanes.hpp.
 inline constexpr std::size_t kSwap[3][6] = {
     {0, 5, 4, 3, 2, 1}, {5, 1, 3, 2, 4, 0}, {4, 3, 2, 1, 0, 5}};
 

@@ -18,9 +18,9 @@ inline void relax_first(const std::uint32_t* type, const Block<float>* inverse, 
   }
 }
 
-/// So many nodes ahead memory is asked for what a node needs: with 4 a sweep over a ball of a
-/// million face-centred modules takes 1.3 times as long, with none 2.8 times. Where clusters go
-/// through all colours at once half as many of each are better.
+/// Memory is asked for so many nodes before it is needed: with 4 a sweep over a ball of a million
+/// face-centred modules takes 1.3 times as long, with none 2.8 times. Where clusters go through all
+/// colours at once half as many of each are better.
 constexpr std::size_t kAhead = 16;
 constexpr std::size_t kAheadByColour = 8;
 

@@ -39,7 +39,7 @@ struct StencilView {
   bool is_along_axes() const { return beams != nullptr; }
 };
 
-/// With blocks of K.
+/// A level with blocks of K.
 template <>
 struct ClusterView<float> {
   const std::int32_t* start = nullptr;
@@ -57,8 +57,8 @@ struct ClusterView<float> {
 /// Marks a spring, by its highest bit, as the one that the other end has.
 inline constexpr std::uint32_t kFarEnd = 1U << 31U;
 
-/// With springs. Both ends of a spring mean the one of the end that comes first, which is that of
-/// the lower rank between two.
+/// A level with springs. Both ends of a spring mean the one of the end that comes first, which is
+/// that of the lower rank between two.
 template <>
 struct ClusterView<double> {
   const std::int32_t* start = nullptr;
@@ -71,7 +71,7 @@ struct ClusterView<double> {
   StencilView stencil = {};  ///< Instead of springs, if it is along the axes.
 };
 
-/// From a level to the next coarser one.
+/// What leads from a level to the next coarser one.
 template <class Real>
 struct TransferView {
   const SeatCode* seat = nullptr;
@@ -79,7 +79,7 @@ struct TransferView {
   const std::int32_t* start = nullptr;   ///< Of each cluster's members, along the Morton curve.
   const std::int32_t* member = nullptr;
 
-  /// From the centre of its cluster to a node.
+  /// The vector from the centre of its cluster to a node, mm.
   const Real* offset_of(std::size_t node) const { return offset[seat[node].place].data(); }
 };
 
@@ -97,7 +97,7 @@ struct Sweeps {
   void (*relax)(const ClusterView<float>&, const Six<float>* r, Six<float>* z, Range);
 };
 
-/// From double precision to sweeps in single, and back.
+/// What leads from double precision to sweeps in single, and back.
 struct Rounding {
   void (*round)(const Six<double>* r, Six<float>* rounded, Range);
   /// z = rough + the rigid motion of the cluster.
@@ -143,7 +143,7 @@ struct Kernels {
   double (*dot_split)(SplitView<Real> r, const Vector* z, Range);
 };
 
-/// Those for this machine.
+/// The kernels for this machine.
 const Sweeps& sweeps();
 const Rounding& rounding();
 template <class Real>

@@ -129,7 +129,7 @@ inline Double low(const Wide& a) { return a.low; }
 
 inline Double high(const Wide& a) { return a.high; }
 
-/// In double precision, whatever it is.
+/// Loads six numbers in double precision, whatever theirs is.
 inline Wide load_wide(const Six<float>& six) {
   const Single value = load(six);
   return {low(value), high(value)};
@@ -213,7 +213,7 @@ inline Double broadcast(const Wide& a) {
   }
 }
 
-/// Which displacement bends with which: the axis keeps its own pair, the others cross.
+/// Swaps what bends together: the axis keeps its own pair, the others cross.
 template <int kAxis>
 inline Single swap(Single a) {
   if constexpr (kAxis == 0) {
@@ -314,7 +314,7 @@ inline Lanes pair_product(const PairRow<Real>& row, const Lanes& plus, const Lan
 
 inline Single repeated(float x) { return Single{x, x, x, x, x, x, x, x}; }
 
-/// The same bits, for an x in memory, from where numbers are repeated for nothing.
+/// Multiplies to the same bits an x in memory, from where numbers are repeated for nothing.
 inline Single multiply(const Block<float>& block, const Six<float>& x) {
   const Single a =
       load(block.column(0)) * repeated(x.v[0]) + load(block.column(1)) * repeated(x.v[1]);

@@ -20,7 +20,7 @@ struct SeatCode {
   std::uint32_t place = 0;
 };
 
-/// From a cluster's centre to a node, mm.
+/// The vector from a cluster's centre to a node, mm.
 template <class Real>
 using Offset = std::array<Real, 3>;
 
@@ -40,7 +40,7 @@ class Seats {
     codes_.push_back({.cluster = seat.cluster, .place = known});
   }
 
-  /// After the last one.
+  /// Gives back memory after the last one.
   void finish() {
     last_ = std::vector<std::uint32_t>();
     offsets_.shrink_to_fit();
@@ -56,8 +56,8 @@ class Seats {
   const Offset<Real>* offsets() const { return offsets_.data(); }
 
  private:
-  /// So many offsets are remembered, each until another one takes its place: then it is stored
-  /// twice.
+  /// The number of offsets that are remembered, each until another one takes its place: then it is
+  /// stored twice.
   static constexpr std::size_t kKnownCount = 4096;
 
   static std::size_t hash(const Offset<Real>& offset) {

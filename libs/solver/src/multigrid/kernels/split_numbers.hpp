@@ -54,7 +54,7 @@ struct SplitView {
   void add(std::size_t i, double term) const { set(i, get(i) + term); }
 };
 
-/// Those of a preconditioner in double precision are whole as they are.
+/// The numbers of a preconditioner in double precision are whole as they are.
 template <>
 struct SplitView<double> {
   Six<double>* rounded = nullptr;

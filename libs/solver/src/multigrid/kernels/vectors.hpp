@@ -20,7 +20,7 @@ struct Six {
   Real v[6] = {};
 };
 
-/// The same with the lanes that are zero: a constant that many nodes share.
+/// A node's vector with the lanes that are zero: a constant that many nodes share.
 template <class Real>
 struct alignas(8 * sizeof(Real)) Eight {
   Real v[8] = {};
