@@ -8,7 +8,7 @@
 
 #include "engine.hpp"
 #include "environment_map.hpp"
-#include "holdfast/agent/feet.hpp"
+#include "holdfast/agent/cells/feet.hpp"
 #include "holdfast/base/check.hpp"
 
 namespace holdfast::sim {

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "holdfast/agent/agent.hpp"     // IWYU pragma: export
-#include "holdfast/agent/listener.hpp"  // IWYU pragma: export
-#include "holdfast/holdfast.hpp"        // IWYU pragma: export
-#include "holdfast/sim/simulation.hpp"  // IWYU pragma: export
+#include "holdfast/agent/agent.hpp"          // IWYU pragma: export
+#include "holdfast/agent/wire/listener.hpp"  // IWYU pragma: export
+#include "holdfast/holdfast.hpp"             // IWYU pragma: export
+#include "holdfast/sim/simulation.hpp"       // IWYU pragma: export
 
 /// The facade's second half: the robot works its verdict out by itself, in simulation.
 ///
