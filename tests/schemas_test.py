@@ -243,7 +243,7 @@ def main(program, repository, image=None):
     schemas = Schemas(repository / 'docs/schemas')
     runs = list(commands(repository / 'scenarios', repository / 'tests'))
     if image:
-        runs.append(['emulate', f'{repository}/scenarios/arm_breaks_a.json', '--image', image])
+        runs.append(['emulate', f'{repository}/scenarios/arm_breaks_a.json', '--image', str(image)])
     faults = []
     places = set()
     with tempfile.TemporaryDirectory() as folder:
@@ -278,4 +278,4 @@ def main(program, repository, image=None):
 
 
 if __name__ == '__main__':
-    sys.exit(main(sys.argv[1], pathlib.Path(sys.argv[2]).resolve(), *sys.argv[3:]))
+    sys.exit(main(*(pathlib.Path(argument).resolve() for argument in sys.argv[1:])))

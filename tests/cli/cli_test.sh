@@ -533,7 +533,7 @@ for command in check steps simulate emulate next order move; do
   done
 done
 # What is written as one format is not named as another.
-for arguments in "check $safe --svg a.png" "check $safe --vtk a.vtk" "check $safe --html a.PDF" \
+for arguments in "check $safe --svg a.jpg" "check $safe --vtk a.vtk" "check $safe --html a.PDF" \
   "check $safe --json a.xml" "next $safe --svg a.json" \
   "order $repository/scenarios/plan/counterweight.json -o a.xml"; do
   # shellcheck disable=SC2086
@@ -541,6 +541,35 @@ for arguments in "check $safe --svg a.png" "check $safe --vtk a.vtk" "check $saf
   expect_line err 'what is written is '
 done
 expect_exit 0 check "$safe" --svg a.picture --json plain
+
+# Figures: PNG and PDF where librsvg is there, else a word about it; options of the picture.
+code=0
+"$program" check "$safe" -q --svg a.png --size 640 2>err || code=$?
+if [ "$code" -eq 0 ]; then
+  [ "$(head -c 20 a.png | tail -c 4 | od -An -tx1)" = " 00 00 02 80" ] ||
+    fault "a.png is not 640 wide"
+  expect_exit 0 next "$safe" -q --svg a.PDF --view 20,30 --no-legend --limit 3
+  [ "$(head -c 5 a.PDF)" = "%PDF-" ] || fault "a.PDF is no PDF"
+else
+  [ "$code" -eq 64 ] || fault "--svg a.png: exit $code"
+  expect_line err 'without librsvg|take librsvg'
+fi
+expect_exit 0 check "$safe" -q --svg front.svg --view front --title "My arm" --grey --size 500x300
+expect_line front.svg 'width="500" height="300"'
+expect_line front.svg '<desc>Front view of a modular robot'
+expect_line front.svg '>My arm</text>'
+expect_exit 0 check "$safe" -q --svg angles.svg --view -60,30
+expect_line angles.svg 'View from azimuth -60 and elevation 30 degrees'
+expect_exit 0 steps "$repository/scenarios/plan/walk_over_beam.json" -q --svg walk.svg --title Walk
+expect_line walk.svg '>Walk: 6 steps, safe<'
+expect_exit 64 steps "$repository/scenarios/plan/walk_over_beam.json" --svg walk.svg --view top
+expect_line err "no option '--view'"
+expect_exit 64 check "$safe" --view front
+expect_line err '^holdfast check: --view requires --svg$'
+expect_exit 64 check "$safe" --svg a.svg --view frond
+expect_line err 'expected iso, front, side, top, or azimuth and elevation'
+expect_exit 64 check "$safe" --svg a.svg --size 5
+expect_line err 'of 16 to 20000 pixels'
 expect_exit 64 generate cube 3 -o a.png
 expect_exit 64 check "$safe" --vtk a.pvd
 expect_line err "what is written is VTK's XML format, whose files end in .vtu"

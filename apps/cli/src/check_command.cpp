@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "figure.hpp"
 #include "file_clash.hpp"
 #include "holdfast/trial.hpp"
 #include "page.hpp"
@@ -23,7 +24,7 @@ struct CheckArguments {
   std::string json;
   std::string connections = "all";
   std::string csv;
-  std::string svg;
+  Figure figure;
   std::string vtk;
   std::string html;
   std::string certificate;
@@ -38,9 +39,9 @@ struct CheckArguments {
 
   /// The files to be written, each with its option.
   Outputs outputs() const {
-    return {{"--json", json, FileFormat::kJson}, {"--csv", csv, FileFormat::kCsv},
-            {"--svg", svg, FileFormat::kSvg},    {"--vtk", vtk, FileFormat::kVtu},
-            {"--html", html, FileFormat::kHtml}, {"--certificate", certificate}};
+    return {{"--json", json, FileFormat::kJson},         {"--csv", csv, FileFormat::kCsv},
+            {"--svg", figure.path, FileFormat::kFigure}, {"--vtk", vtk, FileFormat::kVtu},
+            {"--html", html, FileFormat::kHtml},         {"--certificate", certificate}};
   }
 };
 
@@ -122,9 +123,10 @@ class CheckRun {
         write_connections_csv(out, structure, result, report_options(options_.csv));
       });
     }
-    if (!options_.svg.empty()) {
-      write(options_.svg, picture_svg(structure, result));
-    }
+    const bool is_drawn = write_figure_or_complain(
+        options_.figure,
+        [&](const io::FigureOptions& figure) { return picture_svg(structure, result, figure); });
+    bad_count_ += is_drawn ? 0 : 1;
     if (!options_.vtk.empty()) {
       write(options_.vtk, [&](std::ostream& out) {
         write_picture_vtu(out, structure, result, report_options(options_.vtk));
@@ -296,8 +298,8 @@ class CheckRun {
 
 int run(const CheckArguments& options) {
   if (options.files.size() > 1 &&
-      !(options.csv.empty() && options.svg.empty() && options.vtk.empty() && options.html.empty() &&
-        options.certificate.empty())) {
+      !(options.csv.empty() && options.figure.path.empty() && options.vtk.empty() &&
+        options.html.empty() && options.certificate.empty())) {
     fmt::print(
         stderr,
         "holdfast: --csv, --svg, --vtk, --html and --certificate are for one structure, {} files "
@@ -325,7 +327,7 @@ Command add_check(CLI::App& app) {
   add_connections(*command, options->connections);
   add_output(*command, "--csv", options->csv,
              "Write a table, a line for each connection with its loads");
-  add_output(*command, "--svg", options->svg, "Draw the structure and its loads");
+  add_figure(*command, options->figure, "Draw the structure and its loads");
   add_output(*command, "--vtk", options->vtk, "Write a .vtu file for ParaView");
   add_output(*command, "--html", options->html,
              "Write a page to look at in a browser, with the report");

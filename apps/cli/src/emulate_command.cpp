@@ -8,6 +8,7 @@
 #include "change_options.hpp"
 #include "commands.hpp"
 #include "fault_options.hpp"
+#include "figure.hpp"
 #include "file_clash.hpp"
 #include "holdfast/emulated.hpp"
 #include "own_files.hpp"
@@ -36,12 +37,12 @@ struct EmulateArguments {
   double time_max_s = 60;
   std::string json;
   std::string connections = "all";
-  std::string svg;
+  Figure figure;
   bool is_quiet = false;
 
   /// The files to be written, each with its option.
   Outputs outputs() const {
-    return {{"--json", json, FileFormat::kJson}, {"--svg", svg, FileFormat::kSvg}};
+    return {{"--json", json, FileFormat::kJson}, {"--svg", figure.path, FileFormat::kFigure}};
   }
 };
 
@@ -202,7 +203,7 @@ Command add_emulate(CLI::App& app) {
       ->capture_default_str();
   add_output(*command, "--json", options->json, "Write the report; - is standard output");
   add_connections(*command, options->connections);
-  add_output(*command, "--svg", options->svg, "Draw the robot in the colours that its lamps show");
+  add_figure(*command, options->figure, "Draw the robot in the colours that its lamps show");
   add_quiet(*command, options->is_quiet);
   return {command,
           [options] { return EmulateRun(*options).run(); },

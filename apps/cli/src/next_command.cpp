@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "figure.hpp"
 #include "file_clash.hpp"
 #include "holdfast/trial.hpp"
 #include "progress.hpp"
@@ -19,7 +20,7 @@ struct NextArguments {
   Reading reading;
   std::string file;
   std::string json;
-  std::string svg;
+  Figure figure;
   NextReportOptions report;
   bool is_quiet = false;
   bool is_bonded = false;
@@ -28,7 +29,7 @@ struct NextArguments {
 
   /// The files to be written, each with its option.
   Outputs outputs() const {
-    return {{"--json", json, FileFormat::kJson}, {"--svg", svg, FileFormat::kSvg}};
+    return {{"--json", json, FileFormat::kJson}, {"--svg", figure.path, FileFormat::kFigure}};
   }
 };
 
@@ -40,12 +41,12 @@ bool write_files(const NextArguments& options, const Structure& structure, const
       write_next_json(out, structure, result, options.report);
     });
   }
-  if (!options.svg.empty()) {
-    const std::string picture =
-        next_svg(structure, check(structure, check_options), result, options.report);
-    is_written = write_or_complain(options.svg, picture) && is_written;
-  }
-  return is_written;
+  return write_figure_or_complain(options.figure,
+                                  [&](const io::FigureOptions& figure) {
+                                    return next_svg(structure, check(structure, check_options),
+                                                    result, options.report, figure);
+                                  }) &&
+         is_written;
 }
 
 int run(const NextArguments& options) {
@@ -95,7 +96,7 @@ Command add_next(CLI::App& app) {
                "Structure: VisibleSim XML, holdfast JSON or binary; - is standard input");
   add_reading(*command, options->reading);
   add_output(*command, "--json", options->json, "Write the places as JSON; - is standard output");
-  add_output(*command, "--svg", options->svg, "Draw the structure and a ghost in every place");
+  add_figure(*command, options->figure, "Draw the structure and a ghost in every place");
   command
       ->add_option("--limit", options->report.count_max,
                    "List the best N places only; 0: all of them")

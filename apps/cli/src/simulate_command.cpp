@@ -10,6 +10,7 @@
 #include "change_options.hpp"
 #include "commands.hpp"
 #include "fault_options.hpp"
+#include "figure.hpp"
 #include "file_clash.hpp"
 #include "holdfast/simulated_next.hpp"
 #include "holdfast/simulated_stages.hpp"
@@ -41,7 +42,7 @@ struct SimulateArguments {
   std::string connections = "all";
   std::string trace;
   std::string story;
-  std::string svg;
+  Figure figure;
   bool takes_steps = false;
   bool judges_stages = false;
   bool asks_next = false;
@@ -52,7 +53,7 @@ struct SimulateArguments {
     return {{"--json", json, FileFormat::kJson},
             {"--trace", trace},
             {"--story", story},
-            {"--svg", svg, FileFormat::kSvg}};
+            {"--svg", figure.path, FileFormat::kFigure}};
   }
 };
 
@@ -175,18 +176,19 @@ class SimulateRun {
         write_simulated_next_json(out, structure, simulated);
       });
     }
-    if (!options_.svg.empty()) {
-      const std::string picture = next_svg(structure, check(structure), simulated.next);
-      is_written = write_or_complain(options_.svg, picture) && is_written;
-    }
-    return is_written;
+    return write_figure_or_complain(options_.figure,
+                                    [&](const io::FigureOptions& figure) {
+                                      return next_svg(structure, check(structure), simulated.next,
+                                                      {}, figure);
+                                    }) &&
+           is_written;
   }
 
   int run_steps() {
     if (options_.takes_steps && options_.judges_stages) {
       return usage_error("--steps and --stages do not go together");
     }
-    if (options_.asks_next || has_happenings() || !options_.svg.empty()) {
+    if (options_.asks_next || has_happenings() || !options_.figure.path.empty()) {
       return usage_error(
           "--steps and --stages go with none of --kill, --cut, --detach, --plan, --withdraw, "
           "--attach, --trace, --story, --svg, --next");
@@ -379,7 +381,7 @@ Command add_simulate(CLI::App& app) {
   add_output(*command, "--trace", options->trace, "Write all packets for ui.perfetto.dev");
   add_output(*command, "--story", options->story,
              "Write what happens, in words; - is standard output");
-  add_output(*command, "--svg", options->svg, "Draw the robot in the colours that it shows");
+  add_figure(*command, options->figure, "Draw the robot in the colours that it shows");
   add_quiet(*command, options->is_quiet);
   return {command,
           [options] { return SimulateRun(*options).run(); },

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "commands.hpp"
+#include "figure.hpp"
 #include "file_clash.hpp"
 #include "holdfast/order.hpp"
 #include "holdfast/steps.hpp"
@@ -20,7 +21,7 @@ struct StepsArguments {
   std::string file;
   std::string target;
   std::string json;
-  std::string svg;
+  Figure figure;
   std::string html;
   std::string vtk;
   bool is_quiet = false;
@@ -31,7 +32,7 @@ struct StepsArguments {
   /// The files to be written, each with its option.
   Outputs outputs() const {
     return {{"--json", json, FileFormat::kJson},
-            {"--svg", svg, FileFormat::kSvg},
+            {"--svg", figure.path, FileFormat::kFigure},
             {"--html", html, FileFormat::kHtml},
             {"--vtk", vtk, FileFormat::kPvd}};
   }
@@ -68,9 +69,11 @@ bool write_files(const StepsArguments& options, const StepsFile& file, const Ste
       out << '\n';
     });
   }
-  if (!options.svg.empty()) {
-    is_written = write_or_complain(options.svg, steps_svg(file, result)) && is_written;
-  }
+  is_written = write_figure_or_complain(options.figure,
+                                        [&](const io::FigureOptions& figure) {
+                                          return steps_svg(file, result, figure);
+                                        }) &&
+               is_written;
   if (!options.html.empty()) {
     is_written = write_or_complain(options.html, steps_html(file, result)) && is_written;
   }
@@ -135,7 +138,7 @@ bool complain_of_series(const StepsArguments& options) {
         io::one_line(options.vtk));
     return true;
   }
-  for (const std::string& file : {options.file, options.json, options.svg, options.html}) {
+  for (const std::string& file : {options.file, options.json, options.figure.path, options.html}) {
     if (!options.vtk.empty() && is_in_series(file, options.vtk)) {
       fmt::print(stderr, "holdfast: {}: --vtk {} may write a file of this name\n",
                  io::one_line(file), io::one_line(options.vtk));
@@ -191,8 +194,8 @@ Command add_steps(CLI::App& app) {
   add_reading(*command, options->reading);
   add_output(*command, "--json", options->json,
              "Write the whole report as JSON; - is standard output");
-  add_output(*command, "--svg", options->svg,
-             "Draw verdicts, load ratio and margin along the sequence");
+  add_figure(*command, options->figure, "Draw verdicts, load ratio and margin along the sequence",
+             FigureKind::kChart);
   add_output(*command, "--html", options->html, "Write a page with that picture and the report");
   add_output(*command, "--vtk", options->vtk,
              "Write a .pvd file for ParaView, and a .vtu file beside it for every step");

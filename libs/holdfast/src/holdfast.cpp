@@ -248,9 +248,10 @@ std::string report_text(const Structure& structure, const CheckResult& result,
   return io::write_report_text(entry);
 }
 
-std::string picture_svg(const Structure& structure, const CheckResult& result) {
+std::string picture_svg(const Structure& structure, const CheckResult& result,
+                        const io::FigureOptions& figure) {
   return io::write_svg(structure.robot, result.assessment, structure.name,
-                       structure.document.extension.obstacles);
+                       structure.document.extension.obstacles, figure);
 }
 
 std::string picture_vtu(const Structure& structure, const CheckResult& result) {

@@ -72,8 +72,9 @@ void write_steps_json(std::ostream& out, const StepsFile& file, const StepsResul
   io::write_steps_json(out, entry_of(file, result));
 }
 
-std::string steps_svg(const StepsFile& file, const StepsResult& result) {
-  return io::write_steps_svg(entry_of(file, result));
+std::string steps_svg(const StepsFile& file, const StepsResult& result,
+                      const io::FigureOptions& figure) {
+  return io::write_steps_svg(entry_of(file, result), figure);
 }
 
 std::string steps_html(const StepsFile& file, const StepsResult& result) {

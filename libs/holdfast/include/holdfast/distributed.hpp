@@ -133,7 +133,8 @@ std::string report_text(const Structure& structure, const CheckResult& exact,
                         const DistributedRun& run, const TextOptions& options = {});
 
 /// The robot in the colours of its own load ratios.
-std::string picture_svg(const Structure& structure, const DistributedRun& run);
+std::string picture_svg(const Structure& structure, const DistributedRun& run,
+                        const io::FigureOptions& figure = {});
 
 /// The word that the exact answer has for a verdict of the robot.
 verdict::Verdict to_verdict(agent::Verdict verdict);

@@ -209,7 +209,8 @@ struct TextOptions {
 std::string report_json(const Structure& structure, const CheckResult& result);
 std::string report_text(const Structure& structure, const CheckResult& result,
                         const TextOptions& options = {});
-std::string picture_svg(const Structure& structure, const CheckResult& result);
+std::string picture_svg(const Structure& structure, const CheckResult& result,
+                        const io::FigureOptions& figure = {});
 std::string picture_vtu(const Structure& structure, const CheckResult& result);
 
 /// Writes the JSON report into a stream, in a fixed amount of memory, however large the robot;
