@@ -119,7 +119,7 @@ inline void print_not_written(const std::string& file, const char* reason) {
 inline std::string robot_name_fault(const std::string& name) {
   return model::find_robot(name) != nullptr
              ? std::string()
-             : fmt::format("the robot '{}' is none of the catalogue; holdfast robots lists it",
+             : fmt::format("unknown robot '{}'; holdfast robots lists the known ones",
                            io::one_line(name));
 }
 
@@ -135,14 +135,14 @@ inline io::Document named(io::Document document, const std::string& file) {
 inline void add_reading(CLI::App& command, io::ReadOptions& options) {
   command
       .add_option("--robot", options.robot,
-                  "Robot of files that do not say it, from the list that holdfast robots shows")
+                  "Robot to assume if the file names none; holdfast robots lists them")
       ->type_name("NAME")
       ->check(robot_name_fault);
   command
       .add_option_function<std::string>(
           "--lattice",
           [&options](const std::string& name) { options.lattice = io::find_lattice(name).value(); },
-          "Lattice of files that do not say it, such as VisibleSim's: cubic, face-centred, "
+          "Lattice to assume if the file names none, as VisibleSim's: cubic, face-centred, "
           "hexagonal, hexagonal-prism, or VisibleSim's name of the modules, such as catoms3D")
       ->type_name("NAME")
       ->check([](const std::string& name) {

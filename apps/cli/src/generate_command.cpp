@@ -43,8 +43,7 @@ int run(const GenerateArguments& options) {
 
 Command add_generate(CLI::App& app) {
   auto options = std::make_shared<GenerateArguments>();
-  CLI::App* command = app.add_subcommand(
-      "generate", "Write one of the structures in which solvers are compared, of any size");
+  CLI::App* command = app.add_subcommand("generate", "Write a benchmark structure of any size");
   add_required(*command, "FAMILY", options->family, "One of the families below");
   add_required(*command, "SIZE", options->size, "How large; see the families below");
   command
