@@ -23,7 +23,9 @@ import sys
 import words
 
 SOURCE_SUFFIXES = {'.cpp', '.hpp'}
+# REUSE-IgnoreStart
 SPDX = ['SPDX-FileCopyrightText: The holdfast authors', 'SPDX-License-Identifier: Apache-2.0']
+# REUSE-IgnoreEnd
 FILE_LINES_MAX = 800
 FUNCTION_LINES_MAX = 70
 COLUMNS_MAX = 100
