@@ -543,7 +543,7 @@ def load(path: Path, *, lattice: str = '', robot: str = '', allow_unknown: bool 
 
 
 def generate(family: str, size: int) -> Robot:
-    """A benchmark structure; `families` lists them.
+    """A structure to begin with, such as an arch or a crane; `families` lists them.
 
     >>> generate('tower', 2)
     <holdfast.Robot 'tower 2' of 18 modules, cubic>

@@ -280,6 +280,16 @@ expect_exit 0 robots rofi
 expect_line out 'shear_strength_n +50  project page: '
 expect_exit 0 robots --json robots.json
 expect_line robots.json '"certainty": "not found"'
+
+# A report says its robot and what was asked: not what is the default anyway, nor where it goes.
+expect_exit 0 check "$safe" --json head.json -q --set mass_kg=0.05 --set friction=0.4 \
+  --connections all --bonded
+python3 - "$safe" <<'END' || fault "the head of a report: $(head -n 20 head.json)"
+import json, sys
+report = json.load(open('head.json'))
+assert report['robot'] == {'file': sys.argv[1], 'modules': 11}, report['robot']
+assert report['options'] == {'set': ['mass_kg=0.05', 'friction=0.4'], 'bonded': True}, report
+END
 expect_exit 64 robots roffi
 expect_line err 'unknown robot'
 expect_exit 0 check --robot rofi "$safe"

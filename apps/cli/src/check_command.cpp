@@ -10,6 +10,7 @@
 #include "holdfast/trial.hpp"
 #include "page.hpp"
 #include "progress.hpp"
+#include "reading.hpp"
 
 namespace holdfast::cli {
 namespace {
@@ -17,7 +18,7 @@ namespace {
 using verdict::Verdict;
 
 struct CheckArguments {
-  io::ReadOptions reading;
+  Reading reading;
   std::vector<std::string> files;
   std::string json;
   std::string connections = "all";
@@ -159,7 +160,7 @@ class CheckRun {
   void report_error(const base::Error& error, const std::string& file) {
     ++bad_count_;
     print_error(error, file);
-    add_report([&](std::ostream& out) { out << error_json(error, file); });
+    add_report([&](std::ostream& out) { out << error_json(error, options_.reading.origin(file)); });
   }
 
   template <class Content>
@@ -319,16 +320,16 @@ Command add_check(CLI::App& app) {
   add_required(*command, "FILE", options->files,
                "Structures: VisibleSim XML, holdfast JSON or binary; - is standard input");
   add_reading(*command, options->reading);
-  const auto add_output = [&](const char* name, std::string& path, const char* help) {
-    command->add_option(name, path, help)->type_name("FILE");
-  };
-  add_output("--json", options->json, "Write the whole report as JSON; - is standard output");
+  add_output(*command, "--json", options->json,
+             "Write the whole report as JSON; - is standard output");
   add_connections(*command, options->connections);
-  add_output("--csv", options->csv, "Write a table, a line for each connection with its loads");
-  add_output("--svg", options->svg, "Draw the structure and its loads");
-  add_output("--vtk", options->vtk, "Write a .vtu file for ParaView");
-  add_output("--html", options->html, "Write a page to look at in a browser, with the report");
-  add_output("--certificate", options->certificate,
+  add_output(*command, "--csv", options->csv,
+             "Write a table, a line for each connection with its loads");
+  add_output(*command, "--svg", options->svg, "Draw the structure and its loads");
+  add_output(*command, "--vtk", options->vtk, "Write a .vtu file for ParaView");
+  add_output(*command, "--html", options->html,
+             "Write a page to look at in a browser, with the report");
+  add_output(*command, "--certificate", options->certificate,
              "Write the proof for holdfast-checker; implies --prove");
   command->add_flag("--prove", options->is_proof_wanted,
                     "Prove the largest load ratio; a verdict that is not proved is undecided");

@@ -12,6 +12,7 @@
 #include "holdfast/emulated.hpp"
 #include "own_files.hpp"
 #include "progress.hpp"
+#include "reading.hpp"
 #include "run_report.hpp"
 
 namespace holdfast::cli {
@@ -20,7 +21,7 @@ namespace {
 using emulator::Fault;
 
 struct EmulateArguments {
-  io::ReadOptions reading;
+  Reading reading;
   std::string file;
   std::string board = "v2";
   std::string image;
@@ -199,11 +200,9 @@ Command add_emulate(CLI::App& app) {
       ->type_name("T")
       ->check(number_between(0.001, 3600.0).description(""))
       ->capture_default_str();
-  command->add_option("--json", options->json, "Write the report; - is standard output")
-      ->type_name("FILE");
+  add_output(*command, "--json", options->json, "Write the report; - is standard output");
   add_connections(*command, options->connections);
-  command->add_option("--svg", options->svg, "Draw the robot in the colours that its lamps show")
-      ->type_name("FILE");
+  add_output(*command, "--svg", options->svg, "Draw the robot in the colours that its lamps show");
   add_quiet(*command, options->is_quiet);
   return {command,
           [options] { return EmulateRun(*options).run(); },

@@ -8,6 +8,7 @@
 #include "file_clash.hpp"
 #include "holdfast/trial.hpp"
 #include "progress.hpp"
+#include "reading.hpp"
 
 namespace holdfast::cli {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 using verdict::Verdict;
 
 struct NextArguments {
-  io::ReadOptions reading;
+  Reading reading;
   std::string file;
   std::string json;
   std::string svg;
@@ -93,10 +94,8 @@ Command add_next(CLI::App& app) {
   add_required(*command, "FILE", options->file,
                "Structure: VisibleSim XML, holdfast JSON or binary; - is standard input");
   add_reading(*command, options->reading);
-  command->add_option("--json", options->json, "Write the places as JSON; - is standard output")
-      ->type_name("FILE");
-  command->add_option("--svg", options->svg, "Draw the structure and a ghost in every place")
-      ->type_name("FILE");
+  add_output(*command, "--json", options->json, "Write the places as JSON; - is standard output");
+  add_output(*command, "--svg", options->svg, "Draw the structure and a ghost in every place");
   command
       ->add_option("--limit", options->report.count_max,
                    "List the best N places only; 0: all of them")

@@ -14,12 +14,13 @@
 #include "holdfast/order.hpp"
 #include "interruption.hpp"
 #include "progress.hpp"
+#include "reading.hpp"
 
 namespace holdfast::cli {
 namespace {
 
 struct OrderArguments {
-  io::ReadOptions reading;
+  Reading reading;
   std::string target;
   std::string start;
   std::string reach = "free";
@@ -173,17 +174,19 @@ int run(const OrderArguments& options) {
     }
     request.start = std::move(cells).value();
   }
-  const auto report = [&] {
+  auto sought = [&] {
     const Interruption interruption;
     return seek_order(read.value().document, request);
   }();
-  if (!report) {
-    base::Error error = report.error();
+  if (!sought) {
+    base::Error error = sought.error();
     const bool is_start = error.where == plan::kAtStart;
     error.where = is_start ? "" : error.where;
     return fail(error, is_start && !options.start.empty() ? options.start : options.target);
   }
-  return show(options, report.value());
+  io::OrderReport report = std::move(sought).value();
+  report.origin = options.reading.origin(options.target);
+  return show(options, report);
 }
 
 void add_ways(CLI::App& command, OrderArguments& options) {
@@ -253,19 +256,14 @@ Command add_order(CLI::App& app) {
       ->type_name("START");
   add_ways(*command, *options);
   add_limits(*command, *options);
-  command
-      ->add_option(
-          "-o,--output", options->steps,
-          "Write the order as a structure with steps; - is standard output. If none is found: "
-          "as far as the search got")
-      ->type_name("STEPS.json");
-  command->add_option("--json", options->json, "Write a JSON report; - is standard output")
-      ->type_name("FILE");
-  command
-      ->add_option("--certificate", options->certificate,
-                   "Where there is no order, write what proves it; holdfast steps --verify replays "
-                   "it")
-      ->type_name("FILE");
+  add_output(*command, "-o,--output", options->steps,
+             "Write the order as a structure with steps; - is standard output. If none is found: "
+             "as far as the search got",
+             "STEPS.json");
+  add_output(*command, "--json", options->json, "Write a JSON report; - is standard output");
+  add_output(*command, "--certificate", options->certificate,
+             "Where there is no order, write what proves it; holdfast steps --verify replays "
+             "it");
   add_reading(*command, options->reading);
   return {command,
           [options] { return run(*options); },

@@ -15,13 +15,14 @@
 #include "holdfast/simulated_stages.hpp"
 #include "holdfast/simulated_steps.hpp"
 #include "progress.hpp"
+#include "reading.hpp"
 #include "run_report.hpp"
 
 namespace holdfast::cli {
 namespace {
 
 struct SimulateArguments {
-  io::ReadOptions reading;
+  Reading reading;
   std::string file;
   std::string method = "auto";
   std::string link = "v1";
@@ -190,11 +191,10 @@ class SimulateRun {
           "--steps and --stages go with none of --kill, --cut, --detach, --plan, --withdraw, "
           "--attach, --trace, --story, --svg, --next");
     }
-    const auto file = load_steps(options_.file, options_.reading);
+    const auto file = load_steps_with_notes(options_.file, options_.reading);
     if (!file) {
       return fail(file.error(), options_.file);
     }
-    print_notes(file.value().warnings, options_.file);
     return options_.judges_stages ? run_stages(file.value()) : run_kept(file.value());
   }
 
@@ -374,16 +374,12 @@ Command add_simulate(CLI::App& app) {
   command->add_flag("--next", options->asks_next,
                     "Let the robot judge all its free faces together, then what that leaves "
                     "undecided one by one");
-  command->add_option("--json", options->json, "Write the report; - is standard output")
-      ->type_name("FILE");
+  add_output(*command, "--json", options->json, "Write the report; - is standard output");
   add_connections(*command, options->connections);
-  command->add_option("--trace", options->trace, "Write all packets for ui.perfetto.dev")
-      ->type_name("FILE");
-  command
-      ->add_option("--story", options->story, "Write what happens, in words; - is standard output")
-      ->type_name("FILE");
-  command->add_option("--svg", options->svg, "Draw the robot in the colours that it shows")
-      ->type_name("FILE");
+  add_output(*command, "--trace", options->trace, "Write all packets for ui.perfetto.dev");
+  add_output(*command, "--story", options->story,
+             "Write what happens, in words; - is standard output");
+  add_output(*command, "--svg", options->svg, "Draw the robot in the colours that it shows");
   add_quiet(*command, options->is_quiet);
   return {command,
           [options] { return SimulateRun(*options).run(); },

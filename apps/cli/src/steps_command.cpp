@@ -10,12 +10,13 @@
 #include "holdfast/order.hpp"
 #include "holdfast/steps.hpp"
 #include "progress.hpp"
+#include "reading.hpp"
 
 namespace holdfast::cli {
 namespace {
 
 struct StepsArguments {
-  io::ReadOptions reading;
+  Reading reading;
   std::string file;
   std::string target;
   std::string json;
@@ -156,11 +157,10 @@ int run(const StepsArguments& options) {
   if (complain_of_series(options) || complain_of_outputs(inputs, options.outputs())) {
     return kExitUsage;
   }
-  const auto file = load_steps(options.file, options.reading);
+  const auto file = load_steps_with_notes(options.file, options.reading);
   if (!file) {
     return fail(file.error(), options.file);
   }
-  print_notes(file.value().warnings, options.file);
   Progress progress(options.is_quiet);
   const auto result = judge_steps(file.value(), judging(options, file.value(), progress, "judged"));
   if (!result) {
@@ -189,13 +189,12 @@ Command add_steps(CLI::App& app) {
                    "With --verify: the robot that the certificate has to be of")
       ->type_name("");
   add_reading(*command, options->reading);
-  const auto add_output = [&](const char* name, std::string& path, const char* help) {
-    command->add_option(name, path, help)->type_name("FILE");
-  };
-  add_output("--json", options->json, "Write the whole report as JSON; - is standard output");
-  add_output("--svg", options->svg, "Draw verdicts, load ratio and margin along the sequence");
-  add_output("--html", options->html, "Write a page with that picture and the report");
-  add_output("--vtk", options->vtk,
+  add_output(*command, "--json", options->json,
+             "Write the whole report as JSON; - is standard output");
+  add_output(*command, "--svg", options->svg,
+             "Draw verdicts, load ratio and margin along the sequence");
+  add_output(*command, "--html", options->html, "Write a page with that picture and the report");
+  add_output(*command, "--vtk", options->vtk,
              "Write a .pvd file for ParaView, and a .vtu file beside it for every step");
   command->add_flag("--until-unsafe", options->ends_when_unsafe,
                     "Leave out the steps behind the first unsafe one");

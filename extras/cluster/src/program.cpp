@@ -230,7 +230,8 @@ base::Result<verdict::Verdict> check_whole(const Options& options, const Structu
     return robot.error();
   }
   const CheckResult result = check_by_one(robot.value(), options);
-  const io::ReportEntry entry = {.name = structure.name,
+  const io::ReportEntry entry = {.origin = {.file = options.file},
+                                 .name = structure.name,
                                  .robot = &robot.value(),
                                  .assessment = &result.assessment,
                                  .warnings = structure.warnings,
@@ -302,7 +303,7 @@ int check_in_parts(PetscRanks& ranks, const Options& options, const Structure& s
   is_written = host::all(ranks, is_written);
   if (ranks.rank() == 0 && is_written) {
     is_written = write_answer(options, report_text(structure, part.value(), checked),
-                              report_json(structure, part.value(), checked));
+                              report_json(options.file, structure, part.value(), checked));
   }
   is_written = host::all(ranks, is_written);
   if (is_kept && is_written) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "holdfast/io/report_head.hpp"
 #include "holdfast/trial.hpp"
 
 namespace holdfast {
@@ -55,7 +54,9 @@ void write_next_json(std::ostream& out, const Structure& structure, const NextRe
   std::string text;
   io::JsonStream json(text);
   json.begin_object();
-  io::write_report_head(json, "next");
+  io::write_report_head(json, {.command = "next",
+                               .origin = structure.origin,
+                               .module_count = structure.robot.modules().size()});
   write_next_members(json, structure, result, options);
   json.end_object();
   out << text << "\n";

@@ -11,7 +11,8 @@ namespace holdfast {
 namespace {
 
 io::StepsEntry entry_of(const StepsFile& file, const StepsResult& result) {
-  return {.name = file.name,
+  return {.origin = file.origin,
+          .name = file.name,
           .document = &file.document,
           .judgement = &result.judgement,
           .warnings = file.warnings,
@@ -37,8 +38,10 @@ base::Result<StepsFile> load_steps(const std::filesystem::path& path,
                        .where = io::step_list(document)};
   }
   std::string name = document.name.empty() ? path.stem().string() : document.name;
-  return StepsFile{
-      .name = std::move(name), .document = std::move(document), .warnings = std::move(warnings)};
+  return StepsFile{.name = std::move(name),
+                   .document = std::move(document),
+                   .warnings = std::move(warnings),
+                   .origin = {.file = path.string()}};
 }
 
 base::Result<StepsResult> judge_steps(const StepsFile& file, const StepsOptions& options) {

@@ -26,6 +26,7 @@ struct StepsFile {
   std::string name;  ///< The document's, or the file's without folder and ending.
   io::Document document;
   std::vector<std::string> warnings;
+  io::ReportOrigin origin = {};  ///< What its reports say of where it is from.
 };
 
 /// Reads VisibleSim XML, holdfast JSON or binary. Errors: those of read_document(); there is no

@@ -10,7 +10,6 @@
 
 #include "holdfast/host/text.hpp"
 #include "holdfast/io/beside_one.hpp"
-#include "holdfast/io/report_head.hpp"
 #include "json/json_text.hpp"
 #include "json/json_values.hpp"
 
@@ -156,7 +155,9 @@ base::Result<plan::MoveTask> move_task(const Document& start, const Document& ta
 std::string move_json(const MoveReport& report) {
   const plan::MovePlan& plan = report.plan;
   const StageCount stages = count_stages(plan);
-  Items items = report_head("move");
+  Items items = report_head({.command = "move",
+                             .origin = report.origin,
+                             .module_count = report.task.start.existing.size()});
   const Items found = {member("result", json_text(std::string(plan::name(plan.outcome)))),
                        member("steps", fmt::format("{}", plan.steps.size())),
                        member("steps_min", fmt::format("{}", plan.length_min)),

@@ -11,6 +11,7 @@
 
 #include "holdfast/io/document.hpp"
 #include "holdfast/io/json_stream.hpp"
+#include "holdfast/io/report_head.hpp"
 #include "holdfast/plan/sequence.hpp"
 
 /// Reports the judgement of a sequence of steps.
@@ -18,6 +19,7 @@ namespace holdfast::io {
 
 /// A judged sequence, for a report. Views must outlive the call.
 struct StepsEntry {
+  ReportOrigin origin = {};
   std::string_view name;
   const Document* document = nullptr;
   const plan::SequenceJudgement* judgement = nullptr;
