@@ -13,14 +13,19 @@
 - no tab, no trailing blank, no path of a machine, no TODO without an issue number
 - a link from one document leads to a file that is there, and to a heading that is there
 - what is cited as [Author 1999] has an entry in docs/references.bib
+- documents and messages keep to the words of docs/glossary.md (words.py)
 """
 import pathlib
 import re
 import subprocess
 import sys
 
+import words
+
 SOURCE_SUFFIXES = {'.cpp', '.hpp'}
+# REUSE-IgnoreStart
 SPDX = ['SPDX-FileCopyrightText: The holdfast authors', 'SPDX-License-Identifier: Apache-2.0']
+# REUSE-IgnoreEnd
 FILE_LINES_MAX = 800
 FUNCTION_LINES_MAX = 70
 COLUMNS_MAX = 100
@@ -233,15 +238,23 @@ def check_citations(name, lines, known):
                     fault(name, number, f'docs/references.bib has no {author}{year}')
 
 
+def check_words(table, name, text):
+    for line, avoided, instead in words.breaches(table, name, text):
+        fault(name, line, f'"{avoided}" is a word that we do not use; instead: {instead}')
+
+
 def main():
     root = pathlib.Path(sys.argv[1]).resolve()
     links = room_links(root)
     cited = set(re.findall(r'^@\w+{(\w+),', (root / 'docs/references.bib').read_text(), re.M))
     exported = facade_exports(root)
+    table = words.read_table(root)
     names = tracked_files(root)
     check_functions(root, [name for name in names if pathlib.Path(name).suffix in SOURCE_SUFFIXES])
     for name in names:
         path = root / name
+        if path.suffix in SOURCE_SUFFIXES | {'.md'}:
+            check_words(table, name, path.read_text())
         if path.suffix in SOURCE_SUFFIXES:
             lines = path.read_text().splitlines()
             check_source(name, lines, links, exported)

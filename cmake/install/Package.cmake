@@ -1,4 +1,4 @@
-# Debian packages of what is installed: holdfast (the programs), libholdfast0.1, libholdfast-dev
+# Debian packages of what is installed: holdfast (the programs), libholdfast0.2, libholdfast-dev
 # and, if they are built, python3-holdfast and holdfast-firmware, the images that holdfast emulates.
 # cpack -G DEB, or ./dev package.
 set(CPACK_GENERATOR DEB)

@@ -166,7 +166,7 @@ std::shared_ptr<io::OrderReport> order(const Structure& target, const py::handle
                        : reach == "surface" ? plan::Reach::kSurface
                                             : plan::Reach::kFree;
   if (reach != plan::name(request.rule.reach)) {
-    throw Error("reach: found '" + reach + "', allowed is free, line or surface");
+    throw Error("reach: expected free, line or surface, found '" + reach + "'");
   }
   if (!source.is_none()) {
     request.rule.source = cell_of(source, "source");

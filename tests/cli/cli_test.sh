@@ -267,7 +267,7 @@ expect_exit 65 emulate --lattice hexagonal --image missing.elf catoms.json
 expect_line err "/lattice: the lattice is 'face-centred' here"
 expect_exit 64 simulate --lattice fcc catoms.xml
 expect_exit 64 convert --lattice fcc catoms.xml catoms.json
-expect_line err 'allowed are cubic, face-centred'
+expect_line err 'expected cubic, face-centred'
 expect_exit 64 check --lattice datoms catoms.xml
 expect_line err 'skewed'
 expect_exit 65 check --lattice hexagonal catoms.json
@@ -291,10 +291,10 @@ assert report['robot'] == {'file': sys.argv[1], 'modules': 11}, report['robot']
 assert report['options'] == {'set': ['mass_kg=0.05', 'friction=0.4'], 'bonded': True}, report
 END
 expect_exit 64 robots roffi
-expect_line err 'none of the catalogue'
+expect_line err 'unknown robot'
 expect_exit 0 check --robot rofi "$safe"
 expect_exit 64 check --robot roffi "$safe"
-expect_line err 'none of the catalogue'
+expect_line err 'unknown robot'
 expect_exit 65 check --robot smores-ep wall.json
 expect_line err 'of the robot smores-ep no mass_kg is published'
 
@@ -302,7 +302,7 @@ expect_line err 'of the robot smores-ep no mass_kg is published'
 printf '{"format": "holdfast-structure", "version": 1, "modules": [{"cell": [0,0,0]}],
   "material": {"mass_kg": 0}}' >weightless.json
 expect_exit 65 check weightless.json
-expect_line err 'weightless.json: /material/mass_kg: mass_kg is 0, allowed is 1e-12 to '
+expect_line err 'weightless.json: /material/mass_kg: mass_kg is 0, expected 1e-12 to '
 
 # The rigid body and the model differ, and the report says so.
 printf '{"format": "holdfast-structure", "version": 2, "support_z": null, "modules": [[0,0,0]],
@@ -323,7 +323,7 @@ expect_line out 'bonded on request'
 expect_exit 0 generate bridge 200 -o bridge.json
 expect_exit 1 check bridge.json
 expect_line out '^UNSTABLE'
-expect_line out 'not sought, as the robot topples'
+expect_line out 'not computed, as the robot topples'
 expect_exit 0 generate cube 32 -o cube.json
 expect_exit 2 check --memory 0.01 cube.json
 expect_line out 'too many for the solver'

@@ -161,7 +161,7 @@ _holdfast() {
     generate)
       case $previous in
         -o|--output) files=1 ;;
-        *) if [[ $current == -* ]]; then words="-h --help -o --output"; else words="arm cube tower scaffold shell portal bridge growth ball sheet prism-wall"; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help -o --output"; else words="arm cube tower scaffold shell portal bridge growth ball sheet prism-wall arch crane stairs wall"; fi ;;
       esac
       ;;
     robots)

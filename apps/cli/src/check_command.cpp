@@ -335,19 +335,20 @@ Command add_check(CLI::App& app) {
              "Write the proof for holdfast-checker; implies --prove");
   command->add_flag("--prove", options->is_proof_wanted,
                     "Prove the largest load ratio; a verdict that is not proved is undecided");
-  command->add_flag("--limit", options->is_limit_wanted,
-                    "Seek the limit load: the largest factor that any forces could balance");
+  command->add_flag(
+      "--limit", options->is_limit_wanted,
+      "Compute the limit load, too: the factor of all loads at which the robot collapses");
   command
       ->add_option("--limit-seconds", options->limit_seconds,
                    "Most time for the limit load, s; then the report says what it lies between")
       ->check(number_between(0.0, 1e6))
       ->capture_default_str();
   command->add_flag("--remedies", options->are_remedies_wanted,
-                    "Seek what would make an unsafe structure hold: one more module, a prop, a "
+                    "Find what would make an unsafe structure hold: one more module, a prop, a "
                     "module fixed or taken away, stronger connections");
   add_quiet(*command, options->is_quiet);
   command->add_flag("--bonded", options->is_bonded,
-                    "Let the ground hold like a module below would: no lifting, no tilting");
+                    "Treat the ground as glued: supports can neither lift nor tilt");
   command->add_option("--threads", options->thread_count, "For large robots; 0: all cores")
       ->check(CLI::Range(0, 64));
   command

@@ -128,7 +128,7 @@ inline void print_not_written(const std::string& file, const char* reason) {
 inline std::string robot_name_fault(const std::string& name) {
   return model::find_robot(name) != nullptr
              ? std::string()
-             : fmt::format("the robot '{}' is none of the catalogue; holdfast robots lists it",
+             : fmt::format("unknown robot '{}'; holdfast robots lists the known ones",
                            io::one_line(name));
 }
 

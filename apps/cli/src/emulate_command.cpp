@@ -194,10 +194,10 @@ Command add_emulate(CLI::App& app) {
                    "Only write the page of flash of every module, module_0.bin and so on, for a "
                    "programmer")
       ->type_name("FOLDER");
-  add_seed(*command, options->seed, "Seed of all that is random").capture_default_str();
+  add_seed(*command, options->seed, "Random seed").capture_default_str();
   add_fault_options(*command, options->faults);
   add_change_options(*command, options->changes, "s");
-  command->add_option("--time", options->time_max_s, "Give up after so long (s on the robot)")
+  command->add_option("--time", options->time_max_s, "Give up after this time (s on the robot)")
       ->type_name("T")
       ->check(number_between(0.001, 3600.0).description(""))
       ->capture_default_str();

@@ -44,7 +44,8 @@ int run(const GenerateArguments& options) {
 Command add_generate(CLI::App& app) {
   auto options = std::make_shared<GenerateArguments>();
   CLI::App* command = app.add_subcommand(
-      "generate", "Write a structure to begin with, of any size: an arch, a crane, a tower, ...");
+      "generate",
+      "Write a structure to begin with, of any size: an arch, a crane, a tower or another");
   add_required(*command, "FAMILY", options->family, "One of the families below");
   add_required(*command, "SIZE", options->size, "How large; see the families below");
   add_output(*command, "-o,--output", options->to,

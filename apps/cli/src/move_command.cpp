@@ -171,12 +171,11 @@ void add_ways(CLI::App& command, MoveArguments& options) {
         return box_of(text) ? "" : "expected two cells, such as 0,0,0:9,9,9";
       });
   command.add_flag("--geometry-only", options.ignores_mechanics,
-                   "Seek moves that need not be safe, and judge their stages afterwards");
+                   "Find moves that need not be safe, and judge their stages afterwards");
 }
 
 void add_limits(CLI::App& command, MoveArguments& options) {
-  add_seed(command, options.seed,
-           "Another seed tries moves in another order; the same one finds the same");
+  add_seed(command, options.seed, "Random seed; one seed always gives the same result");
   command.add_option("--seconds", options.seconds, "Give up after this time")
       ->type_name("S")
       ->check(number_between(0.0, 1e6))
@@ -205,7 +204,7 @@ Command add_move(CLI::App& app) {
   add_output(*command, "--json", options->json, "Write a JSON report; - is standard output");
   command
       ->add_option("--verify", options->verified,
-                   "Seek nothing, but replay the certificate in a JSON report of the same FROM, TO "
+                   "Verify the certificate in an earlier JSON report of the same FROM, TO "
                    "and ways to go")
       ->type_name("FILE");
   add_reading(*command, options->reading);

@@ -105,7 +105,7 @@ Command add_next(CLI::App& app) {
       ->capture_default_str();
   add_quiet(*command, options->is_quiet);
   command->add_flag("--bonded", options->is_bonded,
-                    "Let the ground hold like a module below would: no lifting, no tilting");
+                    "Treat the ground as glued: supports can neither lift nor tilt");
   command->add_option("--threads", options->thread_count, "0: all cores")->check(CLI::Range(0, 64));
   command->add_option("--memory", options->memory_gb, "Most memory for the solver, GB")
       ->check(number_between(0.01, 1024.0))

@@ -54,7 +54,7 @@ base::Result<std::vector<base::Cell>> start_cells(const OrderArguments& options,
   }
   if (io::step_count(read.value().document) > 0) {
     return base::Error{base::ErrorCode::kBadInput,
-                       "it has planned modules or steps; allowed is a robot as it stands",
+                       "it has planned modules or steps; expected a robot as it stands",
                        {}};
   }
   const auto start = io::make_spec(read.value().document);
@@ -205,8 +205,7 @@ void add_ways(CLI::App& command, OrderArguments& options) {
       });
   command
       .add_option("--group", options.group_size,
-                  "Attach up to so many modules at the same instant: states in between are not "
-                  "judged")
+                  "Attach up to K modules at the same instant: states in between are not judged")
       ->type_name("K")
       ->check(CLI::Range(1, 16))
       ->capture_default_str();
@@ -215,21 +214,21 @@ void add_ways(CLI::App& command, OrderArguments& options) {
 }
 
 void add_limits(CLI::App& command, OrderArguments& options) {
-  add_seed(command, options.seed,
-           "Another seed tries candidates in another order; the same one finds the same");
+  add_seed(command, options.seed, "Random seed; one seed always gives the same result");
   command.add_flag(
       "--exact", options.is_exact,
-      fmt::format("Solve every state on the way in the end, as is done anyway up to {} "
-                  "modules; beyond, most are certified by a bound of their load ratio "
-                  "only",
+      fmt::format("Solve every state exactly, the default up to {} modules; of larger robots most "
+                  "states are certified by a bound of their load ratio only",
                   kExactModuleCount));
   command.add_option("--seconds", options.seconds, "Give up after this time")
       ->type_name("S")
       ->check(number_between(0.0, 1e6))
       ->capture_default_str();
   command
-      .add_option("--help-seconds", options.help_seconds,
-                  "Where there is no order, seek the least help that would do for this time")
+      .add_option(
+          "--help-seconds", options.help_seconds,
+          "Where there is no order, spend this time on finding the least help that makes one "
+          "possible")
       ->type_name("S")
       ->check(number_between(0.0, 1e6))
       ->capture_default_str();

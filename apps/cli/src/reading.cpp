@@ -36,14 +36,14 @@ void add_reading(CLI::App& command, Reading& reading) {
   io::ReadOptions& options = reading;
   command
       .add_option("--robot", options.robot,
-                  "Robot of files that do not say it, from the list that holdfast robots shows")
+                  "Robot to assume if the file names none; holdfast robots lists them")
       ->type_name("NAME")
       ->check(robot_name_fault);
   command
       .add_option_function<std::string>(
           "--lattice",
           [&options](const std::string& name) { options.lattice = io::find_lattice(name).value(); },
-          "Lattice of files that do not say it, such as VisibleSim's: cubic, face-centred, "
+          "Lattice to assume if the file names none, as VisibleSim's: cubic, face-centred, "
           "hexagonal, hexagonal-prism, or VisibleSim's name of the modules, such as catoms3D")
       ->type_name("NAME")
       ->check([](const std::string& name) {

@@ -365,7 +365,7 @@ Command add_simulate(CLI::App& app) {
       ->type_name("NAME")
       ->check(CLI::IsMember({"v1", "v2", "catoms", "unit"}).description(""))
       ->capture_default_str();
-  add_seed(*command, options->seed, "Seed of all that is random").capture_default_str();
+  add_seed(*command, options->seed, "Random seed").capture_default_str();
   add_noise_options(*command, *options);
   add_fault_options(*command, options->faults);
   add_change_options(*command, options->changes, "s, or rounds");

@@ -136,7 +136,7 @@ std::optional<base::Error> write_steps_vtk(const std::filesystem::path& path, co
   if (io::one_line(name) != name) {
     return base::Error{.code = base::ErrorCode::kBadInput,
                        .message =
-                           "names of .vtu files are written into the .pvd file, allowed is "
+                           "names of .vtu files are written into the .pvd file, expected "
                            "UTF-8 without control characters"};
   }
   plan::RobotState robot(sequence.value().start);

@@ -30,7 +30,7 @@ std::optional<std::string> find_fault(const MaterialParameter& parameter, double
   if (value >= parameter.lowest && value <= parameter.highest) {
     return std::nullopt;
   }
-  return fmt::format("{} is {}, allowed is {} to {}", parameter.key, value, parameter.lowest,
+  return fmt::format("{} is {}, expected {} to {}", parameter.key, value, parameter.lowest,
                      parameter.highest);
 }
 

@@ -698,7 +698,7 @@ const char* name(Reason reason) {
       "a planned module touches nothing",
       "the robot is too large to be counted",
       "no method settled",
-      "the largest load ratio cannot be told from 1",
+      "the largest load ratio cannot be distinguished from 1",
       "the verdict depends on feet that may hold or not",
       "no answer in time",
       "no module that knows its cell was heard",

@@ -22,7 +22,7 @@ struct FacetLook {
 };
 
 constexpr std::array<FacetLook, 5> kLooks = {
-    {{FacetState::kPresses, "facet presses", "#17708f", true},
+    {{FacetState::kPresses, "facet pressed", "#17708f", true},
      {FacetState::kTilts, "facet tilts: on its thick edge or corner", "#c26a00", false},
      {FacetState::kOpen, "facet open", "#6b0a14", false},
      {FacetState::kBonded, "facet bonded", "#2f63a5", true},

@@ -102,11 +102,10 @@ void read_gravity(JsonReading& reading, const Json& value, const JsonPlace& plac
   const std::array<double, 3> gravity = vector(reading, value, place);
   Document& document = reading.document;
   if (!reading.has_failed() && gravity == std::array<double, 3>{}) {
-    reading.fail(
-        place,
-        "gravity is zero, allowed is a vector: without weight a robot rests on nothing, and "
-        "there is nothing to hold; where loads are meant to act alone, give a tiny one, "
-        "such as [0, 0, -1e-9]");
+    reading.fail(place,
+                 "gravity is zero, expected a vector: without weight a robot rests on nothing, and "
+                 "there is nothing to hold; where loads are meant to act alone, give a tiny one, "
+                 "such as [0, 0, -1e-9]");
   }
   if (gravity[0] == 0 && gravity[1] == 0 && gravity[2] < 0) {
     document.material.gravity_m_s2 = -gravity[2];
@@ -368,7 +367,7 @@ void check_kinds(JsonReading& reading) {
     if (!own.kind.empty() &&
         std::ranges::find(extension.kinds, own.kind, &KindEntry::name) == extension.kinds.end()) {
       reading.fail({base::ErrorCode::kBadInput,
-                    fmt::format("the kind {} is none of those in \"kinds\"", excerpt(own.kind)),
+                    fmt::format("the kind {} is not in \"kinds\"", excerpt(own.kind)),
                     own_place(own) + "/kind"});
     }
   }

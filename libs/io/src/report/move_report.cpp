@@ -134,11 +134,10 @@ base::Result<model::RobotSpec> standing_spec(const Document& document, std::stri
   if (document.steps.empty() && document.extension.plan.empty()) {
     return make_spec(document);
   }
-  return base::Error{
-      .code = base::ErrorCode::kBadInput,
-      .message =
-          fmt::format("{} has planned modules or steps; allowed are robots as they stand", which),
-      .where = step_pointer(document, 0)};
+  return base::Error{.code = base::ErrorCode::kBadInput,
+                     .message = fmt::format(
+                         "{} has planned modules or steps; expected robots as they stand", which),
+                     .where = step_pointer(document, 0)};
 }
 
 base::Result<plan::MoveTask> move_task(const Document& start, const Document& target) {

@@ -65,7 +65,8 @@ std::string help_words(const OrderReport& report) {
     return "";
   }
   if (!report.help) {
-    return "  help        no single support and no few temporary modules found that would do\n";
+    return "  help        no single support and no few temporary modules found that would "
+           "suffice\n";
   }
   const bool is_support = !report.help->supports.empty();
   return fmt::format("  help        {}: {}\n",
