@@ -60,9 +60,10 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/holdfast.pc
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
 
 # What the programs read and what is said about them. The page and the firmware's image are there if
-# ./dev page and ./dev firmware have built them.
+# ./dev page and ./dev firmware have built them; a schema refers to the structure's above it.
 install(FILES docs/structure.schema.json build/page/holdfast.html
         DESTINATION ${CMAKE_INSTALL_DATADIR}/holdfast COMPONENT program OPTIONAL)
+install(DIRECTORY docs/schemas DESTINATION ${CMAKE_INSTALL_DATADIR}/holdfast COMPONENT program)
 foreach(board firmware firmware/v1)
   install(FILES build/${board}/module_stm32f0.elf
           DESTINATION ${CMAKE_INSTALL_DATADIR}/holdfast/${board} COMPONENT firmware OPTIONAL)

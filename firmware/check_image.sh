@@ -26,11 +26,11 @@ if [ -n "$bad$heap" ]; then
   fault=1
 fi
 if [ $((text + data)) -gt $flash_max ]; then
-  echo "firmware: $((text + data)) bytes of flash, allowed are $flash_max"
+  echo "firmware: $((text + data)) bytes of flash, expected at most $flash_max"
   fault=1
 fi
 if [ $((data + bss)) -gt "$ram_max" ]; then
-  echo "firmware: $((data + bss)) bytes of RAM, allowed are $ram_max"
+  echo "firmware: $((data + bss)) bytes of RAM, expected at most $ram_max"
   fault=1
 fi
 [ $fault -eq 0 ] || exit 1

@@ -1,4 +1,4 @@
-# Debian packages of what is installed: holdfast (the programs), libholdfast0.1, libholdfast-dev
+# Debian packages of what is installed: holdfast (the programs), libholdfast0.2, libholdfast-dev
 # and, if they are built, python3-holdfast and holdfast-firmware, the images that holdfast emulates.
 # cpack -G DEB, or ./dev package.
 set(CPACK_GENERATOR DEB)
@@ -52,6 +52,7 @@ if(HOLDFAST_BUILD_PYTHON)
       "python3-matplotlib, python3-pil, python3-vtk9, holdfast")
 endif()
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "librsvg2-2")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "xdg-utils, holdfast-firmware")
 if(EXISTS ${PROJECT_SOURCE_DIR}/build/firmware/module_stm32f0.elf)
   list(APPEND CPACK_COMPONENTS_ALL firmware)

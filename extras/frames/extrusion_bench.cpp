@@ -4,7 +4,7 @@
 // problems of assembly_instances (extrusion/*.json), docs/evidence/printed_frames.md.
 //   extrusion_bench FOLDER [SEEDS [SECONDS]]   whole frames, then orders for each seed below SEEDS
 //                                              (1), given up after SECONDS (300) each
-//   extrusion_bench FOLDER verify              orders of seed 0, every prefix solved anew by
+//   extrusion_bench FOLDER verify              orders of seed 0, every prefix solved again by
 //   another
 //                                              method; of large frames every 20th
 #include <fmt/format.h>
@@ -162,7 +162,7 @@ bool verify(const Named& named) {
       ++solved;
     }
   }
-  fmt::print("{:38} {:5} prefixes anew: {}, displacements differ by {:.1e} mm at most\n", name,
+  fmt::print("{:38} {:5} prefixes again: {}, displacements differ by {:.1e} mm at most\n", name,
              solved, is_right ? "all hold" : "WRONG", differs);
   return is_right;
 }

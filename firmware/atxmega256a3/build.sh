@@ -22,8 +22,10 @@ for room in base mechanics agent module; do
 done
 mkdir -p "$out"
 objects=()
-for source in "$rooms"/{mechanics,agent,module}/src/*.cpp "$rooms"/agent/src/conductor/*.cpp \
-  "$here/main.cpp"; do
+# Fronts are no method of this program, and their code needs an int of 32 bits.
+mapfile -t sources < <(find "$rooms"/{mechanics,agent,module}/src -name '*.cpp' \
+                         ! -name 'front*.cpp' | sort)
+for source in "${sources[@]}" "$here/main.cpp"; do
   object=${source#"$root/"}
   object=$out/$(tr / _ <<<"${object%.cpp}").o
   if [ "$source" -nt "$object" ] || [ -n "$(find "$rooms"/{base,mechanics,agent,module} \

@@ -30,7 +30,7 @@ class Film:
         if not reports:
             raise _core.Error('expected at least one report, found none')
         if not 10 <= milliseconds <= 600_000:
-            raise _core.Error(f'found {milliseconds} milliseconds, allowed is 10 to 600,000')
+            raise _core.Error(f'expected 10 to 600,000 milliseconds, found {milliseconds}')
         self.reports = reports
         self.milliseconds = milliseconds
         self._cells = np.concatenate([report.robot.modules['cell'] for report in reports])

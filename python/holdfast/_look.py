@@ -67,7 +67,7 @@ OBSTACLE_COLORS = {False: (128, 138, 146), True: MEANING_COLORS[Meaning.FIXED]}
 OBSTACLE_WORDS = {False: 'obstacle', True: 'obstacle, bonded'}
 OBSTACLES_TOO_MANY_WORDS = 'obstacles, too many to be drawn'
 
-FACET_LOOKS = {'presses': ('facet presses', '#17708f'),
+FACET_LOOKS = {'presses': ('facet pressed', '#17708f'),
                'tilts': ('facet tilts: on its thick edge or corner', '#c26a00'),
                'open': ('facet open', '#6b0a14'),
                'bonded': ('facet bonded', '#2f63a5'),

@@ -298,7 +298,7 @@ class Order(_Texts, _Sought):
 
     @property
     def help(self) -> Optional[dict[str, npt.NDArray[np.int32]]]:
-        """Where there is no order: ``supports`` or ``temporary`` modules that would do."""
+        """Where there is no order: ``supports`` or ``temporary`` modules that would suffice."""
         return self._held.help
 
     def robot(self) -> Robot:
@@ -333,11 +333,12 @@ def order(target: Union[Robot, Path], *, start: Optional[Cells] = None, reach: s
         How a module gets to its cell: ``free``, any cell; ``line``, a straight way in; ``surface``,
         sliding along the robot from `source`.
     group
-        Attach up to so many modules at the same instant, 1 to 16: states in between are not judged.
+        Modules that are attached at the same instant at most, 1 to 16: states in between are not
+        judged.
     reverse
         Take the robot apart, from the target to the start.
     exact
-        Solve every state on the way in the end, as is done anyway up to 256 modules: then
+        Solve every state exactly, the default up to 256 modules: then
         `Order.load_ratio_max` is the largest of all. Else most are certified by a bound.
     seconds, help_seconds
         Give up after this time; where there is no order, seek the least help for so long. None is

@@ -201,7 +201,7 @@ class Report(Judged):
         """The factor beyond which no forces balance: ``outcome``, ``low``, ``high``.
 
         The outcome is found, unbounded or stopped; ``high`` is None where none is known. None if it
-        was not sought.
+        was not computed.
         """
         return self._held.limit_load
 

@@ -101,8 +101,8 @@ def _head(options: Mapping[str, Any], supports: Any) -> str:
     if isinstance(supports, Mapping):
         for key, value in supports.items():
             if key not in ('support_z', 'floor', 'obstacles') or key in said:
-                raise _core.Error(f'supports: found {key!r}; allowed are support_z, floor and '
-                                  'obstacles, each once')
+                raise _core.Error('supports: expected support_z, floor and obstacles, each '
+                                  f'once, found {key!r}')
             said[key] = _obstacle_list(value) if key == 'obstacles' else value
     elif supports is None:
         said['support_z'] = None
@@ -270,7 +270,7 @@ class Robot:
         for value, key in ((2, 'planned'), (3, 'fixed')):
             if (array == value).any() and key in options:
                 raise _core.Error(f'voxels: a {value} says what is {key}, and so does the option; '
-                                  'allowed is one of them')
+                                  'expected one of them')
         if (array == 2).any():
             options.setdefault('planned', np.argwhere(array == 2) + np.asarray(origin))
         if (array == 3).any():
@@ -289,7 +289,7 @@ class Robot:
         memory
             The most for the solver, GB; a robot that needs more is `undecided`.
         bonded
-            The ground holds like a module below would.
+            The ground is treated as glued: supports can neither lift nor tilt.
         limit, limit_seconds
             Also seeks the limit load: the factor beyond which no forces balance.
         proof
@@ -380,7 +380,7 @@ class Robot:
         for entry in own:
             if _cell_of(entry) in attached:
                 raise _core.Error(f'the planned module {_cell_of(entry)} has a mass or a kind of '
-                                  'its own, which steps cannot say; allowed is a robot without it')
+                                  'its own, which steps cannot say; expected a robot without it')
         there = {_cell_of(module) for module in document['modules']} | attached
         document['loads'] = [load for load in document.get('loads', []) if _cell_of(load) in there]
         return self.from_text(_json(document), name=self.name)
@@ -553,7 +553,7 @@ def load(path: Path, *, lattice: str = '', robot: str = '', allow_unknown: bool 
 
 
 def generate(family: str, size: int) -> Robot:
-    """One of the structures in which solvers are compared; `families` lists them.
+    """A structure to begin with, such as an arch or a crane; `families` lists them.
 
     >>> generate('tower', 2)
     <holdfast.Robot 'tower 2' of 18 modules, cubic>

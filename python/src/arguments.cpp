@@ -16,7 +16,7 @@ namespace {
 [[noreturn]] void refuse_value(const py::handle& given, const char* what, const py::handle& low,
                                const py::handle& high) {
   PyErr_Clear();
-  throw Error(py::str("{}: found {}, allowed is {:g} to {:g}")
+  throw Error(py::str("{0}: expected {2:g} to {3:g}, found {1}")
                   .format(what, given, low, high)
                   .cast<std::string>());
 }

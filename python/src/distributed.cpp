@@ -33,7 +33,7 @@ struct Run {
 constexpr std::array<const char*, 6> kFaces = {"+x", "-x", "+y", "-y", "+z", "-z"};
 
 [[noreturn]] void refuse(const std::string& what, const std::string& found, const char* allowed) {
-  throw Error(what + ": found '" + found + "', allowed is " + allowed);
+  throw Error(what + ": expected " + allowed + ", found '" + found + "'");
 }
 
 std::vector<Event> events_of(const py::handle& given) {

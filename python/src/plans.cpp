@@ -116,9 +116,11 @@ std::shared_ptr<JudgedSteps> steps(const SharedStructure& structure, const py::h
       .memory_bytes_max = check.memory_bytes_max,
       .ends_when_unsafe = ends_when_unsafe,
       .progress = [&](std::size_t judged_count) { watch(judged_count, count); }};
-  auto judged = std::make_shared<JudgedSteps>(
-      StepsFile{.name = structure->name, .document = structure->document, .warnings = {}},
-      StepsResult{});
+  auto judged = std::make_shared<JudgedSteps>(StepsFile{.name = structure->name,
+                                                        .document = structure->document,
+                                                        .warnings = {},
+                                                        .origin = structure->origin},
+                                              StepsResult{});
   judged->result = take(without_gil(watch, [&] { return judge_steps(judged->file, options); }));
   return judged;
 }
@@ -164,7 +166,7 @@ std::shared_ptr<io::OrderReport> order(const Structure& target, const py::handle
                        : reach == "surface" ? plan::Reach::kSurface
                                             : plan::Reach::kFree;
   if (reach != plan::name(request.rule.reach)) {
-    throw Error("reach: found '" + reach + "', allowed is free, line or surface");
+    throw Error("reach: expected free, line or surface, found '" + reach + "'");
   }
   if (!source.is_none()) {
     request.rule.source = cell_of(source, "source");

@@ -305,6 +305,8 @@ SharedStructure from_file(const py::handle& given, const py::handle& lattice,
   const auto size = static_cast<py::ssize_t>(read.name.size());
   read.name =
       py::reinterpret_steal<py::str>(PyUnicode_DecodeUTF8(read.name.data(), size, "replace"));
+  // A robot is a value here, and its copies and pickles have the same reports.
+  read.origin = {};
   return std::make_shared<const Structure>(std::move(read));
 }
 

@@ -64,13 +64,13 @@ def refuses(call, error=holdfast.Error):
 @pytest.mark.parametrize('name', CALLS)
 def test_integers_beyond_what_is_allowed(name):
     for given in HUGE:
-        assert f'found {given}, allowed' in refuses(lambda given=given: CALLS[name](given))
+        assert f', found {given}' in refuses(lambda given=given: CALLS[name](given))
 
 
 @pytest.mark.parametrize('name', SEEDS)
 def test_seeds_have_64_bits(name):
     for given in (-1, 2**64):
-        assert f'seed: found {given}' in refuses(lambda given=given: SEEDS[name](given))
+        assert f', found {given}' in refuses(lambda given=given: SEEDS[name](given))
     SEEDS[name](2**64 - 1)
 
 

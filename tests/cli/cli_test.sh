@@ -285,7 +285,7 @@ expect_exit 65 emulate --lattice hexagonal --image missing.elf catoms.json
 expect_line err "/lattice: the lattice is 'face-centred' here"
 expect_exit 64 simulate --lattice fcc catoms.xml
 expect_exit 64 convert --lattice fcc catoms.xml catoms.json
-expect_line err 'allowed are cubic, face-centred'
+expect_line err 'expected cubic, face-centred'
 expect_exit 64 check --lattice datoms catoms.xml
 expect_line err 'skewed'
 expect_exit 65 check --lattice hexagonal catoms.json
@@ -298,11 +298,21 @@ expect_exit 0 robots rofi
 expect_line out 'shear_strength_n +50  project page: '
 expect_exit 0 robots --json robots.json
 expect_line robots.json '"certainty": "not found"'
+
+# A report says its robot and what was asked: not what is the default anyway, nor where it goes.
+expect_exit 0 check "$safe" --json head.json -q --set mass_kg=0.05 --set friction=0.4 \
+  --connections all --bonded
+python3 - "$safe" <<'END' || fault "the head of a report: $(head -n 20 head.json)"
+import json, sys
+report = json.load(open('head.json'))
+assert report['robot'] == {'file': sys.argv[1], 'modules': 11}, report['robot']
+assert report['options'] == {'set': ['mass_kg=0.05', 'friction=0.4'], 'bonded': True}, report
+END
 expect_exit 64 robots roffi
-expect_line err 'none of the catalogue'
+expect_line err 'unknown robot'
 expect_exit 0 check --robot rofi "$safe"
 expect_exit 64 check --robot roffi "$safe"
-expect_line err "none of the catalogue; did you mean 'rofi'\\?"
+expect_line err "unknown robot 'roffi'; did you mean 'rofi'\\?"
 expect_exit 64 robots blinky
 expect_line err "did you mean 'blinky-blocks'"
 expect_exit 65 check --robot smores-ep wall.json
@@ -312,7 +322,7 @@ expect_line err 'of the robot smores-ep no mass_kg is published'
 printf '{"format": "holdfast-structure", "version": 1, "modules": [{"cell": [0,0,0]}],
   "material": {"mass_kg": 0}}' >weightless.json
 expect_exit 65 check weightless.json
-expect_line err 'weightless.json: /material/mass_kg: mass_kg is 0, allowed is 1e-12 to '
+expect_line err 'weightless.json: /material/mass_kg: mass_kg is 0, expected 1e-12 to '
 
 # The rigid body and the model differ, and the report says so.
 printf '{"format": "holdfast-structure", "version": 2, "support_z": null, "modules": [[0,0,0]],
@@ -333,7 +343,7 @@ expect_line out 'bonded on request'
 expect_exit 0 generate bridge 200 -o bridge.json
 expect_exit 1 check bridge.json
 expect_line out '^UNSTABLE'
-expect_line out 'not sought, as the robot topples'
+expect_line out 'not computed, as the robot topples'
 expect_exit 0 generate cube 32 -o cube.json
 expect_exit 2 check --memory 0.01 cube.json
 expect_line out 'too many for the solver'
@@ -555,7 +565,7 @@ for command in check steps simulate emulate next order move; do
   done
 done
 # What is written as one format is not named as another.
-for arguments in "check $safe --svg a.png" "check $safe --vtk a.vtk" "check $safe --html a.PDF" \
+for arguments in "check $safe --svg a.jpg" "check $safe --vtk a.vtk" "check $safe --html a.PDF" \
   "check $safe --json a.xml" "next $safe --svg a.json" \
   "order $repository/scenarios/plan/counterweight.json -o a.xml"; do
   # shellcheck disable=SC2086
@@ -563,6 +573,35 @@ for arguments in "check $safe --svg a.png" "check $safe --vtk a.vtk" "check $saf
   expect_line err 'what is written is '
 done
 expect_exit 0 check "$safe" --svg a.picture --json plain
+
+# Figures: PNG and PDF where librsvg is there, else a word about it; options of the picture.
+code=0
+"$program" check "$safe" -q --svg a.png --size 640 2>err || code=$?
+if [ "$code" -eq 0 ]; then
+  [ "$(head -c 20 a.png | tail -c 4 | od -An -tx1)" = " 00 00 02 80" ] ||
+    fault "a.png is not 640 wide"
+  expect_exit 0 next "$safe" -q --svg a.PDF --view 20,30 --no-legend --limit 3
+  [ "$(head -c 5 a.PDF)" = "%PDF-" ] || fault "a.PDF is no PDF"
+else
+  [ "$code" -eq 64 ] || fault "--svg a.png: exit $code"
+  expect_line err 'without librsvg|take librsvg'
+fi
+expect_exit 0 check "$safe" -q --svg front.svg --view front --title "My arm" --grey --size 500x300
+expect_line front.svg 'width="500" height="300"'
+expect_line front.svg '<desc>Front view of a modular robot'
+expect_line front.svg '>My arm</text>'
+expect_exit 0 check "$safe" -q --svg angles.svg --view -60,30
+expect_line angles.svg 'View from azimuth -60 and elevation 30 degrees'
+expect_exit 0 steps "$repository/scenarios/plan/walk_over_beam.json" -q --svg walk.svg --title Walk
+expect_line walk.svg '>Walk: 6 steps, safe<'
+expect_exit 64 steps "$repository/scenarios/plan/walk_over_beam.json" --svg walk.svg --view top
+expect_line err "no option '--view'"
+expect_exit 64 check "$safe" --view front
+expect_line err '^holdfast check: --view requires --svg$'
+expect_exit 64 check "$safe" --svg a.svg --view frond
+expect_line err 'expected iso, front, side, top, or azimuth and elevation'
+expect_exit 64 check "$safe" --svg a.svg --size 5
+expect_line err 'of 16 to 20000 pixels'
 expect_exit 64 generate cube 3 -o a.png
 expect_exit 64 check "$safe" --vtk a.pvd
 expect_line err "what is written is VTK's XML format, whose files end in .vtu"

@@ -61,7 +61,8 @@ for board in v2 v1; do
     fault "emulate without an image: exit $code, $(cat "$work/log")"
   fi
 done
-for file in bin/holdfast share/holdfast/structure.schema.json share/man/man1/holdfast.1.gz \
+for file in bin/holdfast share/holdfast/structure.schema.json \
+  share/holdfast/schemas/check.schema.json share/man/man1/holdfast.1.gz \
   share/man/man1/holdfast-checker.1.gz share/bash-completion/completions/holdfast \
   share/zsh/vendor-completions/_holdfast share/fish/vendor_completions.d/holdfast.fish; do
   [ -s "$prefix/$file" ] || fault "$file is not installed"

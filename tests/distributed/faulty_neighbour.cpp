@@ -6,7 +6,7 @@
 #include <bit>
 #include <iterator>
 
-#include "holdfast/agent/operations.hpp"
+#include "holdfast/agent/wire/operations.hpp"
 
 namespace holdfast::test {
 namespace {

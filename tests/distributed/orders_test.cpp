@@ -14,8 +14,8 @@
 #include <sstream>
 
 #include "general_robot.hpp"
-#include "holdfast/agent/operations.hpp"
-#include "holdfast/agent/wire.hpp"
+#include "holdfast/agent/wire/operations.hpp"
+#include "holdfast/agent/wire/wire.hpp"
 #include "holdfast/holdfast.hpp"
 #include "holdfast/model/families.hpp"
 #include "holdfast/sim/simulation.hpp"

@@ -17,13 +17,16 @@ _holdfast() {
         --connections) : ;;
         --csv) files=1 ;;
         --svg) files=1 ;;
+        --size) : ;;
+        --title) : ;;
+        --view) : ;;
         --vtk) files=1 ;;
         --html) files=1 ;;
         --certificate) files=1 ;;
         --limit-seconds) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --json --connections --csv --svg --vtk --html --certificate --prove --limit --limit-seconds --remedies -q --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --json --connections --csv --svg --size --title --grey --view --no-legend --vtk --html --certificate --prove --limit --limit-seconds -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     steps)
@@ -33,10 +36,12 @@ _holdfast() {
         --set) : ;;
         --json) files=1 ;;
         --svg) files=1 ;;
+        --size) : ;;
+        --title) : ;;
         --html) files=1 ;;
         --vtk) files=1 ;;
         --threads) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --json --svg --html --vtk --until-unsafe --verify -q --quiet --threads"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --json --svg --size --title --grey --html --vtk --until-unsafe --verify -q --quiet --threads"; else files=1; fi ;;
       esac
       ;;
     next)
@@ -46,10 +51,13 @@ _holdfast() {
         --set) : ;;
         --json) files=1 ;;
         --svg) files=1 ;;
+        --size) : ;;
+        --title) : ;;
+        --view) : ;;
         --limit) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --json --svg --limit -q --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --json --svg --size --title --grey --view --no-legend --limit -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     order)
@@ -110,7 +118,10 @@ _holdfast() {
         --trace) files=1 ;;
         --story) files=1 ;;
         --svg) files=1 ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --steps --stages --next --json --connections --trace --story --svg -q --quiet"; else files=1; fi ;;
+        --size) : ;;
+        --title) : ;;
+        --view) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --steps --stages --next --json --connections --trace --story --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
       esac
       ;;
     emulate)
@@ -133,7 +144,10 @@ _holdfast() {
         --json) files=1 ;;
         --connections) : ;;
         --svg) files=1 ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --board --image --pages --seed --kill --reset --cut --flip --plan --withdraw --attach --time --json --connections --svg -q --quiet"; else files=1; fi ;;
+        --size) : ;;
+        --title) : ;;
+        --view) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --board --image --pages --seed --kill --reset --cut --flip --plan --withdraw --attach --time --json --connections --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
       esac
       ;;
     convert)
@@ -147,7 +161,7 @@ _holdfast() {
     generate)
       case $previous in
         -o|--output) files=1 ;;
-        *) if [[ $current == -* ]]; then words="-h --help -o --output"; else words="arm cube tower scaffold shell portal bridge growth ball sheet prism-wall"; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help -o --output"; else words="arm cube tower scaffold shell portal bridge growth ball sheet prism-wall arch crane stairs wall"; fi ;;
       esac
       ;;
     robots)

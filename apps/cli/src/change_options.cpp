@@ -13,7 +13,7 @@ void add_change_options(CLI::App& command, ChangeOptions& options, const std::st
   };
   add("--plan", options.plans,
       "A module is planned at time T (" + time + "); the first module is told");
-  add("--withdraw", options.withdrawals, "It is not planned any more; all@T: nothing is");
+  add("--withdraw", options.withdrawals, "A plan is withdrawn at time T; all@T: all plans");
   add("--attach", options.attachments, "A module comes to the cell; its plan is fulfilled");
 }
 

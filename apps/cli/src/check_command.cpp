@@ -6,10 +6,12 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "figure.hpp"
 #include "file_clash.hpp"
 #include "holdfast/trial.hpp"
 #include "page.hpp"
 #include "progress.hpp"
+#include "reading.hpp"
 
 namespace holdfast::cli {
 namespace {
@@ -17,12 +19,12 @@ namespace {
 using verdict::Verdict;
 
 struct CheckArguments {
-  io::ReadOptions reading;
+  Reading reading;
   std::vector<std::string> files;
   std::string json;
   std::string connections = "all";
   std::string csv;
-  std::string svg;
+  Figure figure;
   std::string vtk;
   std::string html;
   std::string certificate;
@@ -37,9 +39,9 @@ struct CheckArguments {
 
   /// The files to be written, each with its option.
   Outputs outputs() const {
-    return {{"--json", json, FileFormat::kJson}, {"--csv", csv, FileFormat::kCsv},
-            {"--svg", svg, FileFormat::kSvg},    {"--vtk", vtk, FileFormat::kVtu},
-            {"--html", html, FileFormat::kHtml}, {"--certificate", certificate}};
+    return {{"--json", json, FileFormat::kJson},         {"--csv", csv, FileFormat::kCsv},
+            {"--svg", figure.path, FileFormat::kFigure}, {"--vtk", vtk, FileFormat::kVtu},
+            {"--html", html, FileFormat::kHtml},         {"--certificate", certificate}};
   }
 };
 
@@ -121,9 +123,10 @@ class CheckRun {
         write_connections_csv(out, structure, result, report_options(options_.csv));
       });
     }
-    if (!options_.svg.empty()) {
-      write(options_.svg, picture_svg(structure, result));
-    }
+    const bool is_drawn = write_figure_or_complain(
+        options_.figure,
+        [&](const io::FigureOptions& figure) { return picture_svg(structure, result, figure); });
+    bad_count_ += is_drawn ? 0 : 1;
     if (!options_.vtk.empty()) {
       write(options_.vtk, [&](std::ostream& out) {
         write_picture_vtu(out, structure, result, report_options(options_.vtk));
@@ -159,7 +162,7 @@ class CheckRun {
   void report_error(const base::Error& error, const std::string& file) {
     ++bad_count_;
     print_error(error, file);
-    add_report([&](std::ostream& out) { out << error_json(error, file); });
+    add_report([&](std::ostream& out) { out << error_json(error, options_.reading.origin(file)); });
   }
 
   template <class Content>
@@ -295,8 +298,8 @@ class CheckRun {
 
 int run(const CheckArguments& options) {
   if (options.files.size() > 1 &&
-      !(options.csv.empty() && options.svg.empty() && options.vtk.empty() && options.html.empty() &&
-        options.certificate.empty())) {
+      !(options.csv.empty() && options.figure.path.empty() && options.vtk.empty() &&
+        options.html.empty() && options.certificate.empty())) {
     fmt::print(
         stderr,
         "holdfast: --csv, --svg, --vtk, --html and --certificate are for one structure, {} files "
@@ -319,22 +322,22 @@ Command add_check(CLI::App& app) {
   add_required(*command, "FILE", options->files,
                "Structures: VisibleSim XML, holdfast JSON or binary; - is standard input");
   add_reading(*command, options->reading);
-  const auto add_output = [&](const char* name, std::string& path, const char* help) {
-    command->add_option(name, path, help)->type_name("FILE");
-  };
-  add_output("--json", options->json, "Write the whole report as JSON; - is standard output");
+  add_output(*command, "--json", options->json,
+             "Write the whole report as JSON; - is standard output");
   add_connections(*command, options->connections);
-  add_output("--csv", options->csv, "Write a table, a line for each connection with its loads");
-  add_output("--svg", options->svg, "Draw the structure and its loads");
-  add_output("--vtk", options->vtk, "Write a .vtu file for ParaView");
-  add_output("--html", options->html, "Write a page to look at in a browser, with the report");
-  add_output("--certificate", options->certificate,
+  add_output(*command, "--csv", options->csv,
+             "Write a table, a line for each connection with its loads");
+  add_figure(*command, options->figure, "Draw the structure and its loads");
+  add_output(*command, "--vtk", options->vtk, "Write a .vtu file for ParaView");
+  add_output(*command, "--html", options->html,
+             "Write a page to look at in a browser, with the report");
+  add_output(*command, "--certificate", options->certificate,
              "Write the proof for holdfast-checker; implies --prove");
   command->add_flag("--prove", options->is_proof_wanted,
                     "Prove the largest load ratio; a verdict that is not proved is undecided");
-  CLI::Option* const limit =
-      command->add_flag("--limit", options->is_limit_wanted,
-                        "Seek the limit load: the largest factor that any forces could balance");
+  CLI::Option* const limit = command->add_flag(
+      "--limit", options->is_limit_wanted,
+      "Compute the limit load, too: the factor of all loads at which the robot collapses");
   command
       ->add_option("--limit-seconds", options->limit_seconds,
                    "Most time for the limit load, s; then the report says what it lies between")
@@ -342,11 +345,11 @@ Command add_check(CLI::App& app) {
       ->needs(limit)
       ->capture_default_str();
   command->add_flag("--remedies", options->are_remedies_wanted,
-                    "Seek what would make an unsafe structure hold: one more module, a prop, a "
+                    "Find what would make an unsafe structure hold: one more module, a prop, a "
                     "module fixed or taken away, stronger connections");
   add_quiet(*command, options->is_quiet);
   command->add_flag("--bonded", options->is_bonded,
-                    "Let the ground hold like a module below would: no lifting, no tilting");
+                    "Treat the ground as glued: supports can neither lift nor tilt");
   command->add_option("--threads", options->thread_count, "For large robots; 0: all cores")
       ->check(CLI::Range(0, 64));
   command

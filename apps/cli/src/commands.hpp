@@ -65,10 +65,19 @@ inline CLI::Validator number_between(double low, double high) {
   return check;
 }
 
+/// The group of options that only say where outputs go; a report does not repeat them.
+inline constexpr const char* kOutputs = "Outputs";
+
+/// An option that names a file to be written.
+inline CLI::Option& add_output(CLI::App& command, const std::string& name, std::string& path,
+                               const std::string& help, const std::string& type = "FILE") {
+  return *command.add_option(name, path, help)->type_name(type)->group(kOutputs);
+}
+
 /// The flag -q, --quiet.
 inline void add_quiet(CLI::App& command, bool& is_quiet,
                       const std::string& help = "Print errors only; the exit code is the answer") {
-  command.add_flag("-q,--quiet", is_quiet, help);
+  command.add_flag("-q,--quiet", is_quiet, help)->group(kOutputs);
 }
 
 /// The option --seed. CLI11 by itself takes what is too large for the largest seed.
@@ -125,7 +134,7 @@ inline std::string robot_name_fault(const std::string& name) {
     names.push_back(robot.name);
   }
   const auto near = io::near_miss(name, names);
-  return fmt::format("the robot '{}' is none of the catalogue; {}", io::one_line(name),
+  return fmt::format("unknown robot '{}'; {}", io::one_line(name),
                      near ? fmt::format("did you mean '{}'?", *near)
                           : fmt::format("expected {}", fmt::join(names, ", ")));
 }
@@ -136,71 +145,6 @@ inline io::Document named(io::Document document, const std::string& file) {
     document.name = std::filesystem::path(file).stem().string();
   }
   return document;
-}
-
-/// The options of commands that read structures, for what a file leaves open.
-inline void add_reading(CLI::App& command, io::ReadOptions& options) {
-  command
-      .add_option("--robot", options.robot,
-                  "Robot of files that do not say it, from the list that holdfast robots shows")
-      ->type_name("NAME")
-      ->check(robot_name_fault);
-  command
-      .add_option_function<std::string>(
-          "--lattice",
-          [&options](const std::string& name) { options.lattice = io::find_lattice(name).value(); },
-          "Lattice of files that do not say it, such as VisibleSim's: cubic, face-centred, "
-          "hexagonal, hexagonal-prism, or VisibleSim's name of the modules, such as catoms3D")
-      ->type_name("NAME")
-      ->check([](const std::string& name) {
-        const auto found = io::find_lattice(name);
-        return found ? std::string() : found.error().message;
-      });
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--set",
-          [&options](const std::vector<std::string>& texts) {
-            for (const std::string& text : texts) {
-              options.settings.push_back(io::find_setting(text).value());
-            }
-          },
-          "Give a number of the material another value than the file does, such as "
-          "strength_lateral_n=12")
-      ->type_name("KEY=NUMBER")
-      ->allow_extra_args(false)
-      ->check([](const std::string& text) {
-        const auto found = io::find_setting(text);
-        return found ? std::string() : found.error().message;
-      });
-  command.add_flag(
-      "--allow-unknown", options.allow_unknown,
-      "Ignore keys of holdfast JSON that are unknown, with a note; without it they are "
-      "errors");
-}
-
-/// Reads a document and prints its notes.
-inline base::Result<io::ReadDocument> read_with_notes(const std::string& file,
-                                                      const io::ReadOptions& options) {
-  const auto text = read_file(file);
-  if (!text) {
-    return text.error();
-  }
-  auto read = io::read_document(text.value(), options);
-  if (read) {
-    print_notes(read.value().warnings, file);
-  }
-  return read;
-}
-
-/// Reads a structure and prints its notes. 0 threads: as many as the machine has cores.
-inline base::Result<Structure> load_with_notes(const std::string& file,
-                                               const io::ReadOptions& options = {},
-                                               int thread_count = 0) {
-  auto structure = load_file(file, thread_count, options);
-  if (structure) {
-    print_notes(structure.value().warnings, file);
-  }
-  return structure;
 }
 
 /// The option --connections of commands that write a JSON report.

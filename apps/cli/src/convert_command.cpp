@@ -7,12 +7,13 @@
 
 #include "commands.hpp"
 #include "file_clash.hpp"
+#include "reading.hpp"
 
 namespace holdfast::cli {
 namespace {
 
 struct ConvertArguments {
-  io::ReadOptions reading;
+  Reading reading;
   std::string from;
   std::string to;
 };

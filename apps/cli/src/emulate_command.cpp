@@ -8,10 +8,12 @@
 #include "change_options.hpp"
 #include "commands.hpp"
 #include "fault_options.hpp"
+#include "figure.hpp"
 #include "file_clash.hpp"
 #include "holdfast/emulated.hpp"
 #include "own_files.hpp"
 #include "progress.hpp"
+#include "reading.hpp"
 #include "run_report.hpp"
 
 namespace holdfast::cli {
@@ -20,7 +22,7 @@ namespace {
 using emulator::Fault;
 
 struct EmulateArguments {
-  io::ReadOptions reading;
+  Reading reading;
   std::string file;
   std::string board = "v2";
   std::string image;
@@ -35,12 +37,12 @@ struct EmulateArguments {
   double time_max_s = 60;
   std::string json;
   std::string connections = "all";
-  std::string svg;
+  Figure figure;
   bool is_quiet = false;
 
   /// The files to be written, each with its option.
   Outputs outputs() const {
-    return {{"--json", json, FileFormat::kJson}, {"--svg", svg, FileFormat::kSvg}};
+    return {{"--json", json, FileFormat::kJson}, {"--svg", figure.path, FileFormat::kFigure}};
   }
 };
 
@@ -192,18 +194,16 @@ Command add_emulate(CLI::App& app) {
                    "Only write the page of flash of every module, module_0.bin and so on, for a "
                    "programmer")
       ->type_name("FOLDER");
-  add_seed(*command, options->seed, "Seed of all that is random").capture_default_str();
+  add_seed(*command, options->seed, "Random seed").capture_default_str();
   add_fault_options(*command, options->faults);
   add_change_options(*command, options->changes, "s");
-  command->add_option("--time", options->time_max_s, "Give up after so long (s on the robot)")
+  command->add_option("--time", options->time_max_s, "Give up after this time (s on the robot)")
       ->type_name("T")
       ->check(number_between(0.001, 3600.0).description(""))
       ->capture_default_str();
-  command->add_option("--json", options->json, "Write the report; - is standard output")
-      ->type_name("FILE");
+  add_output(*command, "--json", options->json, "Write the report; - is standard output");
   add_connections(*command, options->connections);
-  command->add_option("--svg", options->svg, "Draw the robot in the colours that its lamps show")
-      ->type_name("FILE");
+  add_figure(*command, options->figure, "Draw the robot in the colours that its lamps show");
   add_quiet(*command, options->is_quiet);
   return {command,
           [options] { return EmulateRun(*options).run(); },

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "holdfast/figure_file.hpp"
 
 namespace holdfast::cli {
 namespace {
@@ -114,7 +115,11 @@ std::optional<std::string> find_clash(std::span<const std::string> inputs, const
 std::optional<std::string> find_foreign_ending(const Outputs& outputs) {
   for (const Output& output : outputs) {
     if (output.format && !is_standard_output(output.path)) {
-      if (const auto error = holdfast::find_foreign_ending(*output.format, output.path)) {
+      auto error = holdfast::find_foreign_ending(*output.format, output.path);
+      if (!error && *output.format == FileFormat::kFigure) {
+        error = find_figure_fault(output.path);
+      }
+      if (error) {
         return fmt::format("{} {}: {}", output.option, output.path, error->message);
       }
     }

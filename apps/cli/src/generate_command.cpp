@@ -44,20 +44,19 @@ int run(const GenerateArguments& options) {
 Command add_generate(CLI::App& app) {
   auto options = std::make_shared<GenerateArguments>();
   CLI::App* command = app.add_subcommand(
-      "generate", "Write one of the structures in which solvers are compared, of any size");
+      "generate",
+      "Write a structure to begin with, of any size: an arch, a crane, a tower or another");
   add_required(*command, "FAMILY", options->family, "One of the families below");
   add_required(*command, "SIZE", options->size, "How large; see the families below");
-  command
-      ->add_option("-o,--output", options->to,
-                   "File to write, .json, .xml or .holdfast; - is standard output")
-      ->type_name("FILE");
+  add_output(*command, "-o,--output", options->to,
+             "File to write, .json, .xml or .holdfast; - is standard output");
   std::string notes = "Families:\n";
   for (const auto& [name, help] : family_list()) {
     notes += fmt::format("  {:<12}{}\n", name, help);
   }
   return {command,
           [options] { return run(*options); },
-          {.examples = {{"generate bridge 40 -o bridge.json", "a bridge of 40 cells"},
+          {.examples = {{"generate crane 12 -o crane.json", "a crane 12 modules high"},
                         {"generate ball 9 | holdfast check -", "judge one at once"}},
            .notes = notes + "\nAll stand on z = 0.",
            .exits = {{0, "the structure is written"},

@@ -20,6 +20,7 @@ constexpr std::size_t kSecondColumn = 28;
 constexpr std::size_t kWidthMin = 60;
 constexpr std::size_t kWidthMax = 100;
 constexpr std::size_t kWidthUsual = 80;
+constexpr std::size_t kExampleColumnMin = 6;  ///< If all commands are long.
 constexpr std::size_t kExampleColumnMax = 44;
 
 std::size_t terminal_width() {
@@ -77,7 +78,7 @@ std::string paragraphs(std::string_view text) {
 
 /// What an example does stands beside it, or below it if it is too long for that.
 std::string list_of(const std::vector<Example>& examples) {
-  std::size_t column = 0;
+  std::size_t column = kExampleColumnMin;
   for (const Example& example : examples) {
     const std::size_t end = example.command.size() + std::size("  holdfast   ");
     column = end <= kExampleColumnMax ? std::max(column, end) : column;

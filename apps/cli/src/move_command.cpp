@@ -12,12 +12,13 @@
 #include "holdfast/move.hpp"
 #include "interruption.hpp"
 #include "progress.hpp"
+#include "reading.hpp"
 
 namespace holdfast::cli {
 namespace {
 
 struct MoveArguments {
-  io::ReadOptions reading;
+  Reading reading;
   std::string start;
   std::string target;
   bool pivots = false;
@@ -100,8 +101,8 @@ int verify(const MoveArguments& options, const MoveRequest& request, const io::D
 
 /// A robot as it stands, so that an error names the file that it is in.
 base::Result<io::Document> read(const std::string& file, std::string_view which,
-                                const io::ReadOptions& options) {
-  auto found = read_with_notes(file, options);
+                                const Reading& reading) {
+  auto found = read_with_notes(file, reading);
   if (!found) {
     return found.error();
   }
@@ -149,9 +150,14 @@ int run(const MoveArguments& options) {
     return verify(options, request, start.value(), target.value());
   }
   const Interruption interruption;
-  const auto report = seek_moves(start.value(), target.value(), request);
-  return report ? show(options, report.value())
-                : fail(report.error(), options.start + " " + options.target);
+  auto sought = seek_moves(start.value(), target.value(), request);
+  if (!sought) {
+    return fail(sought.error(), options.start + " " + options.target);
+  }
+  io::MoveReport report = std::move(sought).value();
+  report.origin = options.reading.origin(options.start);
+  report.origin.target = options.target;
+  return show(options, report);
 }
 
 void add_ways(CLI::App& command, MoveArguments& options) {
@@ -165,12 +171,11 @@ void add_ways(CLI::App& command, MoveArguments& options) {
         return box_of(text) ? "" : "expected two cells, such as 0,0,0:9,9,9";
       });
   command.add_flag("--geometry-only", options.ignores_mechanics,
-                   "Seek moves that need not be safe, and judge their stages afterwards");
+                   "Find moves that need not be safe, and judge their stages afterwards");
 }
 
 void add_limits(CLI::App& command, MoveArguments& options) {
-  add_seed(command, options.seed,
-           "Another seed tries moves in another order; the same one finds the same");
+  add_seed(command, options.seed, "Random seed; one seed always gives the same result");
   command.add_option("--seconds", options.seconds, "Give up after this time")
       ->type_name("S")
       ->check(number_between(0.0, 1e6))
@@ -193,16 +198,13 @@ Command add_move(CLI::App& app) {
   add_required(*command, "TO", options->target, "The same modules in the shape that is wanted");
   add_ways(*command, *options);
   add_limits(*command, *options);
-  command
-      ->add_option("-o,--output", options->steps,
-                   "Write FROM with the moves as its steps; - is standard output. If the shape is "
-                   "not found: those to the nearest one")
-      ->type_name("FILE");
-  command->add_option("--json", options->json, "Write a JSON report; - is standard output")
-      ->type_name("FILE");
+  add_output(*command, "-o,--output", options->steps,
+             "Write FROM with the moves as its steps; - is standard output. If the shape is "
+             "not found: those to the nearest one");
+  add_output(*command, "--json", options->json, "Write a JSON report; - is standard output");
   command
       ->add_option("--verify", options->verified,
-                   "Seek nothing, but replay the certificate in a JSON report of the same FROM, TO "
+                   "Verify the certificate in an earlier JSON report of the same FROM, TO "
                    "and ways to go")
       ->type_name("FILE");
   add_reading(*command, options->reading);

@@ -5,9 +5,11 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "figure.hpp"
 #include "file_clash.hpp"
 #include "holdfast/trial.hpp"
 #include "progress.hpp"
+#include "reading.hpp"
 
 namespace holdfast::cli {
 namespace {
@@ -15,10 +17,10 @@ namespace {
 using verdict::Verdict;
 
 struct NextArguments {
-  io::ReadOptions reading;
+  Reading reading;
   std::string file;
   std::string json;
-  std::string svg;
+  Figure figure;
   NextReportOptions report;
   bool is_quiet = false;
   bool is_bonded = false;
@@ -27,7 +29,7 @@ struct NextArguments {
 
   /// The files to be written, each with its option.
   Outputs outputs() const {
-    return {{"--json", json, FileFormat::kJson}, {"--svg", svg, FileFormat::kSvg}};
+    return {{"--json", json, FileFormat::kJson}, {"--svg", figure.path, FileFormat::kFigure}};
   }
 };
 
@@ -39,12 +41,12 @@ bool write_files(const NextArguments& options, const Structure& structure, const
       write_next_json(out, structure, result, options.report);
     });
   }
-  if (!options.svg.empty()) {
-    const std::string picture =
-        next_svg(structure, check(structure, check_options), result, options.report);
-    is_written = write_or_complain(options.svg, picture) && is_written;
-  }
-  return is_written;
+  return write_figure_or_complain(options.figure,
+                                  [&](const io::FigureOptions& figure) {
+                                    return next_svg(structure, check(structure, check_options),
+                                                    result, options.report, figure);
+                                  }) &&
+         is_written;
 }
 
 int run(const NextArguments& options) {
@@ -93,10 +95,8 @@ Command add_next(CLI::App& app) {
   add_required(*command, "FILE", options->file,
                "Structure: VisibleSim XML, holdfast JSON or binary; - is standard input");
   add_reading(*command, options->reading);
-  command->add_option("--json", options->json, "Write the places as JSON; - is standard output")
-      ->type_name("FILE");
-  command->add_option("--svg", options->svg, "Draw the structure and a ghost in every place")
-      ->type_name("FILE");
+  add_output(*command, "--json", options->json, "Write the places as JSON; - is standard output");
+  add_figure(*command, options->figure, "Draw the structure and a ghost in every place");
   command
       ->add_option("--limit", options->report.count_max,
                    "List the best N places only; 0: all of them")
@@ -105,7 +105,7 @@ Command add_next(CLI::App& app) {
       ->capture_default_str();
   add_quiet(*command, options->is_quiet);
   command->add_flag("--bonded", options->is_bonded,
-                    "Let the ground hold like a module below would: no lifting, no tilting");
+                    "Treat the ground as glued: supports can neither lift nor tilt");
   command->add_option("--threads", options->thread_count, "0: all cores")->check(CLI::Range(0, 64));
   command->add_option("--memory", options->memory_gb, "Most memory for the solver, GB")
       ->check(number_between(0.01, 1024.0))

@@ -14,12 +14,13 @@
 #include "holdfast/order.hpp"
 #include "interruption.hpp"
 #include "progress.hpp"
+#include "reading.hpp"
 
 namespace holdfast::cli {
 namespace {
 
 struct OrderArguments {
-  io::ReadOptions reading;
+  Reading reading;
   std::string target;
   std::string start;
   std::string reach = "free";
@@ -53,7 +54,7 @@ base::Result<std::vector<base::Cell>> start_cells(const OrderArguments& options,
   }
   if (io::step_count(read.value().document) > 0) {
     return base::Error{base::ErrorCode::kBadInput,
-                       "it has planned modules or steps; allowed is a robot as it stands",
+                       "it has planned modules or steps; expected a robot as it stands",
                        {}};
   }
   const auto start = io::make_spec(read.value().document);
@@ -173,17 +174,19 @@ int run(const OrderArguments& options) {
     }
     request.start = std::move(cells).value();
   }
-  const auto report = [&] {
+  auto sought = [&] {
     const Interruption interruption;
     return seek_order(read.value().document, request);
   }();
-  if (!report) {
-    base::Error error = report.error();
+  if (!sought) {
+    base::Error error = sought.error();
     const bool is_start = error.where == plan::kAtStart;
     error.where = is_start ? "" : error.where;
     return fail(error, is_start && !options.start.empty() ? options.start : options.target);
   }
-  return show(options, report.value());
+  io::OrderReport report = std::move(sought).value();
+  report.origin = options.reading.origin(options.target);
+  return show(options, report);
 }
 
 void add_ways(CLI::App& command, OrderArguments& options) {
@@ -202,8 +205,7 @@ void add_ways(CLI::App& command, OrderArguments& options) {
       });
   command
       .add_option("--group", options.group_size,
-                  "Attach up to so many modules at the same instant: states in between are not "
-                  "judged")
+                  "Attach up to K modules at the same instant: states in between are not judged")
       ->type_name("K")
       ->check(CLI::Range(1, 16))
       ->capture_default_str();
@@ -212,21 +214,21 @@ void add_ways(CLI::App& command, OrderArguments& options) {
 }
 
 void add_limits(CLI::App& command, OrderArguments& options) {
-  add_seed(command, options.seed,
-           "Another seed tries candidates in another order; the same one finds the same");
+  add_seed(command, options.seed, "Random seed; one seed always gives the same result");
   command.add_flag(
       "--exact", options.is_exact,
-      fmt::format("Solve every state on the way in the end, as is done anyway up to {} "
-                  "modules; beyond, most are certified by a bound of their load ratio "
-                  "only",
+      fmt::format("Solve every state exactly, the default up to {} modules; of larger robots most "
+                  "states are certified by a bound of their load ratio only",
                   kExactModuleCount));
   command.add_option("--seconds", options.seconds, "Give up after this time")
       ->type_name("S")
       ->check(number_between(0.0, 1e6))
       ->capture_default_str();
   command
-      .add_option("--help-seconds", options.help_seconds,
-                  "Where there is no order, seek the least help that would do for this time")
+      .add_option(
+          "--help-seconds", options.help_seconds,
+          "Where there is no order, spend this time on finding the least help that makes one "
+          "possible")
       ->type_name("S")
       ->check(number_between(0.0, 1e6))
       ->capture_default_str();
@@ -254,19 +256,14 @@ Command add_order(CLI::App& app) {
       ->type_name("START");
   add_ways(*command, *options);
   add_limits(*command, *options);
-  command
-      ->add_option(
-          "-o,--output", options->steps,
-          "Write the order as a structure with steps; - is standard output. If none is found: "
-          "as far as the search got")
-      ->type_name("STEPS.json");
-  command->add_option("--json", options->json, "Write a JSON report; - is standard output")
-      ->type_name("FILE");
-  command
-      ->add_option("--certificate", options->certificate,
-                   "Where there is no order, write what proves it; holdfast steps --verify replays "
-                   "it")
-      ->type_name("FILE");
+  add_output(*command, "-o,--output", options->steps,
+             "Write the order as a structure with steps; - is standard output. If none is found: "
+             "as far as the search got",
+             "STEPS.json");
+  add_output(*command, "--json", options->json, "Write a JSON report; - is standard output");
+  add_output(*command, "--certificate", options->certificate,
+             "Where there is no order, write what proves it; holdfast steps --verify replays "
+             "it");
   add_reading(*command, options->reading);
   return {command,
           [options] { return run(*options); },

@@ -4,18 +4,17 @@
 
 #include <algorithm>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
 #include "commands.hpp"
+#include "reading.hpp"
 
 namespace holdfast::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 struct RobotsArguments {
+  const CLI::App* command = nullptr;
   std::string name;
   std::string json;
 };
@@ -53,35 +52,50 @@ void print_robot(const model::CatalogueRobot& robot) {
   }
 }
 
-Json robot_json(const model::CatalogueRobot& robot) {
-  Json figures = Json::array();
+void write_robot(io::JsonStream& json, const model::CatalogueRobot& robot) {
+  json.begin_object();
+  json.member("name", robot.name);
+  json.member("title", robot.title);
+  json.member("lattice", io::lattice_name(robot.lattice));
+  json.member("note", robot.note);
+  json.key("figures");
+  json.begin_array();
   for (const model::RobotFigure& figure : robot.figures) {
-    figures.push_back({{"key", figure.key},
-                       {"value", figure.value ? Json(*figure.value) : Json()},
-                       {"certainty", model::name(figure.certainty)},
-                       {"source", figure.source}});
+    json.begin_object();
+    json.member("key", figure.key);
+    json.member("value", figure.value);
+    json.member("certainty", model::name(figure.certainty));
+    json.member("source", figure.source);
+    json.end_object();
   }
-  return {{"name", robot.name},
-          {"title", robot.title},
-          {"lattice", io::lattice_name(robot.lattice)},
-          {"note", robot.note},
-          {"figures", figures}};
+  json.end_array();
+  json.end_object();
 }
 
-Json list_json() {
-  Json list = Json::array();
+/// The report of one robot, or of all.
+std::string report(const RobotsArguments& options, const model::CatalogueRobot* only) {
+  std::string text;
+  io::JsonStream json(text);
+  json.begin_object();
+  io::write_report_head(json, {.command = "robots",
+                               .origin = {.file = {}, .options = given_options(*options.command)}});
+  json.key("robots");
+  json.begin_array();
   for (const model::CatalogueRobot& robot : model::robot_catalogue()) {
-    list.push_back(robot_json(robot));
+    if (only == nullptr || &robot == only) {
+      write_robot(json, robot);
+    }
   }
-  return list;
+  json.end_array();
+  json.end_object();
+  return text + "\n";
 }
 
 int run(const RobotsArguments& options) {
   const model::CatalogueRobot* const robot =
       options.name.empty() ? nullptr : model::find_robot(options.name);
   if (!options.json.empty()) {
-    const Json json = robot == nullptr ? list_json() : robot_json(*robot);
-    return write_or_complain(options.json, json.dump(2) + "\n") ? kExitSafe : kExitBadInput;
+    return write_or_complain(options.json, report(options, robot)) ? kExitSafe : kExitBadInput;
   }
   if (robot == nullptr) {
     print_list();
@@ -97,13 +111,12 @@ Command add_robots(CLI::App& app) {
   auto options = std::make_shared<RobotsArguments>();
   CLI::App* command = app.add_subcommand(
       "robots", "List robots that have been built, with what is known of them and from where");
+  options->command = command;
   command->add_option("NAME", options->name, "Show one of them, with every figure and its source")
       ->type_name("")
       ->check(robot_name_fault);
-  command
-      ->add_option("--json", options->json,
-                   "Write all figures and sources as JSON; - is standard output")
-      ->type_name("FILE");
+  add_output(*command, "--json", options->json,
+             "Write all figures and sources as JSON; - is standard output");
   return {
       command,
       [options] { return run(*options); },

@@ -3,13 +3,14 @@
 #pragma once
 
 #include "commands.hpp"
+#include "figure.hpp"
 #include "holdfast/distributed.hpp"
 
 namespace holdfast::cli {
 
 /// Prints what a robot has worked out, simulated or emulated, and writes the files that the options
-/// `json` and `svg` name, with the `connections` chosen; `is_silent` if the terminal gets nothing
-/// but a report asked for with "-". False if a file cannot be written.
+/// `json` and `figure` name, with the `connections` chosen; `is_silent` if the terminal gets
+/// nothing but a report asked for with "-". False if a file cannot be written.
 template <class Options, class Run>
 bool show_run(const Options& options, bool is_silent, const Structure& structure,
               const CheckResult& exact, const Run& run, const DistributedRun& picture) {
@@ -26,10 +27,11 @@ bool show_run(const Options& options, bool is_silent, const Structure& structure
       out << '\n';
     });
   }
-  if (!options.svg.empty()) {
-    is_written = write_or_complain(options.svg, picture_svg(structure, picture)) && is_written;
-  }
-  return is_written;
+  return write_figure_or_complain(options.figure,
+                                  [&](const io::FigureOptions& figure) {
+                                    return picture_svg(structure, picture, figure);
+                                  }) &&
+         is_written;
 }
 
 }  // namespace holdfast::cli

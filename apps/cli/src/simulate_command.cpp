@@ -10,18 +10,20 @@
 #include "change_options.hpp"
 #include "commands.hpp"
 #include "fault_options.hpp"
+#include "figure.hpp"
 #include "file_clash.hpp"
 #include "holdfast/simulated_next.hpp"
 #include "holdfast/simulated_stages.hpp"
 #include "holdfast/simulated_steps.hpp"
 #include "progress.hpp"
+#include "reading.hpp"
 #include "run_report.hpp"
 
 namespace holdfast::cli {
 namespace {
 
 struct SimulateArguments {
-  io::ReadOptions reading;
+  Reading reading;
   std::string file;
   std::string method = "auto";
   std::string link = "v1";
@@ -40,7 +42,7 @@ struct SimulateArguments {
   std::string connections = "all";
   std::string trace;
   std::string story;
-  std::string svg;
+  Figure figure;
   bool takes_steps = false;
   bool judges_stages = false;
   bool asks_next = false;
@@ -51,7 +53,7 @@ struct SimulateArguments {
     return {{"--json", json, FileFormat::kJson},
             {"--trace", trace},
             {"--story", story},
-            {"--svg", svg, FileFormat::kSvg}};
+            {"--svg", figure.path, FileFormat::kFigure}};
   }
 };
 
@@ -174,27 +176,27 @@ class SimulateRun {
         write_simulated_next_json(out, structure, simulated);
       });
     }
-    if (!options_.svg.empty()) {
-      const std::string picture = next_svg(structure, check(structure), simulated.next);
-      is_written = write_or_complain(options_.svg, picture) && is_written;
-    }
-    return is_written;
+    return write_figure_or_complain(options_.figure,
+                                    [&](const io::FigureOptions& figure) {
+                                      return next_svg(structure, check(structure), simulated.next,
+                                                      {}, figure);
+                                    }) &&
+           is_written;
   }
 
   int run_steps() {
     if (options_.takes_steps && options_.judges_stages) {
       return usage_error("--steps and --stages do not go together");
     }
-    if (options_.asks_next || has_happenings() || !options_.svg.empty()) {
+    if (options_.asks_next || has_happenings() || !options_.figure.path.empty()) {
       return usage_error(
           "--steps and --stages go with none of --kill, --cut, --detach, --plan, --withdraw, "
           "--attach, --trace, --story, --svg, --next");
     }
-    const auto file = load_steps(options_.file, options_.reading);
+    const auto file = load_steps_with_notes(options_.file, options_.reading);
     if (!file) {
       return fail(file.error(), options_.file);
     }
-    print_notes(file.value().warnings, options_.file);
     return options_.judges_stages ? run_stages(file.value()) : run_kept(file.value());
   }
 
@@ -363,7 +365,7 @@ Command add_simulate(CLI::App& app) {
       ->type_name("NAME")
       ->check(CLI::IsMember({"v1", "v2", "catoms", "unit"}).description(""))
       ->capture_default_str();
-  add_seed(*command, options->seed, "Seed of all that is random").capture_default_str();
+  add_seed(*command, options->seed, "Random seed").capture_default_str();
   add_noise_options(*command, *options);
   add_fault_options(*command, options->faults);
   add_change_options(*command, options->changes, "s, or rounds");
@@ -374,16 +376,12 @@ Command add_simulate(CLI::App& app) {
   command->add_flag("--next", options->asks_next,
                     "Let the robot judge all its free faces together, then what that leaves "
                     "undecided one by one");
-  command->add_option("--json", options->json, "Write the report; - is standard output")
-      ->type_name("FILE");
+  add_output(*command, "--json", options->json, "Write the report; - is standard output");
   add_connections(*command, options->connections);
-  command->add_option("--trace", options->trace, "Write all packets for ui.perfetto.dev")
-      ->type_name("FILE");
-  command
-      ->add_option("--story", options->story, "Write what happens, in words; - is standard output")
-      ->type_name("FILE");
-  command->add_option("--svg", options->svg, "Draw the robot in the colours that it shows")
-      ->type_name("FILE");
+  add_output(*command, "--trace", options->trace, "Write all packets for ui.perfetto.dev");
+  add_output(*command, "--story", options->story,
+             "Write what happens, in words; - is standard output");
+  add_figure(*command, options->figure, "Draw the robot in the colours that it shows");
   add_quiet(*command, options->is_quiet);
   return {command,
           [options] { return SimulateRun(*options).run(); },

@@ -6,20 +6,22 @@
 #include <system_error>
 
 #include "commands.hpp"
+#include "figure.hpp"
 #include "file_clash.hpp"
 #include "holdfast/order.hpp"
 #include "holdfast/steps.hpp"
 #include "progress.hpp"
+#include "reading.hpp"
 
 namespace holdfast::cli {
 namespace {
 
 struct StepsArguments {
-  io::ReadOptions reading;
+  Reading reading;
   std::string file;
   std::string target;
   std::string json;
-  std::string svg;
+  Figure figure;
   std::string html;
   std::string vtk;
   bool is_quiet = false;
@@ -30,7 +32,7 @@ struct StepsArguments {
   /// The files to be written, each with its option.
   Outputs outputs() const {
     return {{"--json", json, FileFormat::kJson},
-            {"--svg", svg, FileFormat::kSvg},
+            {"--svg", figure.path, FileFormat::kFigure},
             {"--html", html, FileFormat::kHtml},
             {"--vtk", vtk, FileFormat::kPvd}};
   }
@@ -67,9 +69,11 @@ bool write_files(const StepsArguments& options, const StepsFile& file, const Ste
       out << '\n';
     });
   }
-  if (!options.svg.empty()) {
-    is_written = write_or_complain(options.svg, steps_svg(file, result)) && is_written;
-  }
+  is_written = write_figure_or_complain(options.figure,
+                                        [&](const io::FigureOptions& figure) {
+                                          return steps_svg(file, result, figure);
+                                        }) &&
+               is_written;
   if (!options.html.empty()) {
     is_written = write_or_complain(options.html, steps_html(file, result)) && is_written;
   }
@@ -134,7 +138,7 @@ bool complain_of_series(const StepsArguments& options) {
         io::one_line(options.vtk));
     return true;
   }
-  for (const std::string& file : {options.file, options.json, options.svg, options.html}) {
+  for (const std::string& file : {options.file, options.json, options.figure.path, options.html}) {
     if (!options.vtk.empty() && is_in_series(file, options.vtk)) {
       fmt::print(stderr, "holdfast: {}: --vtk {} may write a file of this name\n",
                  io::one_line(file), io::one_line(options.vtk));
@@ -156,11 +160,10 @@ int run(const StepsArguments& options) {
   if (complain_of_series(options) || complain_of_outputs(inputs, options.outputs())) {
     return kExitUsage;
   }
-  const auto file = load_steps(options.file, options.reading);
+  const auto file = load_steps_with_notes(options.file, options.reading);
   if (!file) {
     return fail(file.error(), options.file);
   }
-  print_notes(file.value().warnings, options.file);
   Progress progress(options.is_quiet);
   const auto result = judge_steps(file.value(), judging(options, file.value(), progress, "judged"));
   if (!result) {
@@ -189,13 +192,12 @@ Command add_steps(CLI::App& app) {
                    "With --verify: the robot that the certificate has to be of")
       ->type_name("");
   add_reading(*command, options->reading);
-  const auto add_output = [&](const char* name, std::string& path, const char* help) {
-    command->add_option(name, path, help)->type_name("FILE");
-  };
-  add_output("--json", options->json, "Write the whole report as JSON; - is standard output");
-  add_output("--svg", options->svg, "Draw verdicts, load ratio and margin along the sequence");
-  add_output("--html", options->html, "Write a page with that picture and the report");
-  add_output("--vtk", options->vtk,
+  add_output(*command, "--json", options->json,
+             "Write the whole report as JSON; - is standard output");
+  add_figure(*command, options->figure, "Draw verdicts, load ratio and margin along the sequence",
+             FigureKind::kChart);
+  add_output(*command, "--html", options->html, "Write a page with that picture and the report");
+  add_output(*command, "--vtk", options->vtk,
              "Write a .pvd file for ParaView, and a .vtu file beside it for every step");
   command->add_flag("--until-unsafe", options->ends_when_unsafe,
                     "Leave out the steps behind the first unsafe one");

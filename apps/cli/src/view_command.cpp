@@ -7,12 +7,13 @@
 #include "commands.hpp"
 #include "file_clash.hpp"
 #include "page.hpp"
+#include "reading.hpp"
 
 namespace holdfast::cli {
 namespace {
 
 struct ViewArguments {
-  io::ReadOptions reading;
+  Reading reading;
   std::string file;
   std::string out;
   bool stays_closed = false;
@@ -84,10 +85,8 @@ Command add_view(CLI::App& app) {
   add_required(*command, "FILE", options->file,
                "Structure: VisibleSim XML, holdfast JSON or binary; - is standard input");
   add_reading(*command, options->reading);
-  command
-      ->add_option("--out", options->out,
-                   "Write the page there, not into a temporary file; - is standard output")
-      ->type_name("FILE");
+  add_output(*command, "--out", options->out,
+             "Write the page there, not into a temporary file; - is standard output");
   command->add_flag("--no-open", options->stays_closed, "Write the page only");
   return {command,
           [options] { return run(*options); },

@@ -627,13 +627,13 @@ test('a number that cannot be is refused in its field, in words, and nothing is 
   const page = await openPage(browser);
   await page.click('summary');
   for (const [label, text, words, right] of [
-    ['Elastic modulus E', '0', /^0 is not possible: allowed is 1e-12 to 1e12 MPa\.$/, '100'],
+    ['Elastic modulus E', '0', /^0 is not possible: expected 1e-12 to 1e12 MPa\.$/, '100'],
     ['Mass of a module', '-1', /^-1 is not possible/, '0.06106'],
-    ['Poisson’s ratio', '0.7', /allowed is -0.99 to 0.5\.$/, '0.3'],
+    ['Poisson’s ratio', '0.7', /expected -0.99 to 0.5\.$/, '0.3'],
     ['Pitch L', 'abc', /^“abc” is not a number\.$/, '40'],
     ['Strength, lateral', '', /^A number is needed here\.$/, '14,97'],
     ['Ground at z', '1.5', /^1.5 is not a whole number\.$/, '0'],
-    ['Floor’s friction', '-0.5', /^-0.5 is not possible: allowed is 0 to/, ''],
+    ['Floor’s friction', '-0.5', /^-0.5 is not possible: expected 0 to/, ''],
     ['Gravity z', '0', /^Without gravity nothing rests on anything\.$/, '-9.81'],
     ['Gravity x', '-1e300', /^-1e300 is not possible/, '0'],
   ]) {

@@ -321,7 +321,7 @@ function expectProgram(asked) {
 
 /** What holds of the page by itself, whatever came before. */
 function expectConsistent(seen, where) {
-  assert.ok(!/allowed is|\/material|gravity/.test(seen.problem ?? ''), `${where}: a field has taken what cannot be: ${seen.problem}`);
+  assert.ok(!/is not possible|\/material|gravity/.test(seen.problem ?? ''), `${where}: a field has taken what cannot be: ${seen.problem}`);
   assert.ok(seen.isOff.every((isOff) => isOff === seen.isExhibiting), `${where}: what is about the robot that is built is off beside a stage`);
   assert.doesNotMatch(`${seen.panel.figures} ${seen.limit}`, /-0\b(?!\.[1-9])|NaN|undefined/, where);
   assert.ok(!seen.hasTrace || seen.hasOwnColours, `${where}: the computation that is open has its colours`);

@@ -68,7 +68,8 @@ std::string banner(verdict::Verdict verdict) {
   return fmt::format("{:<9}", word);
 }
 
-std::string report_json(const Structure& structure, const Part& part, const Checked& checked) {
+std::string report_json(const std::string& file, const Structure& structure, const Part& part,
+                        const Checked& checked) {
   const io::WholeRobot whole = {.existing_count = part.counts.all - part.counts.planned,
                                 .planned_count = part.counts.planned,
                                 .facet_count = part.counts.facets,
@@ -76,7 +77,8 @@ std::string report_json(const Structure& structure, const Part& part, const Chec
                                 .broken = checked.broken};
   std::ostringstream out;
   io::write_report_json(out,
-                        {.name = structure.name,
+                        {.origin = {.file = file},
+                         .name = structure.name,
                          .robot = &part.robot,
                          .assessment = &checked.assessment,
                          .warnings = structure.warnings,

@@ -30,8 +30,10 @@ Checked check(const Part& part, const CheckOptions& options);
 /// The verdict in capitals, nine letters wide.
 std::string banner(verdict::Verdict verdict);
 
-/// The report of a robot in parts, as holdfast check writes it but without a list of connections.
-std::string report_json(const Structure& structure, const Part& part, const Checked& checked);
+/// The report of a robot in parts, which is from a file, as holdfast check writes it but without a
+/// list of connections.
+std::string report_json(const std::string& file, const Structure& structure, const Part& part,
+                        const Checked& checked);
 std::string report_text(const Structure& structure, const Part& part, const Checked& checked);
 
 }  // namespace holdfast::cluster

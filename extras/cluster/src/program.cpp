@@ -230,7 +230,8 @@ base::Result<verdict::Verdict> check_whole(const Options& options, const Structu
     return robot.error();
   }
   const CheckResult result = check_by_one(robot.value(), options);
-  const io::ReportEntry entry = {.name = structure.name,
+  const io::ReportEntry entry = {.origin = {.file = options.file},
+                                 .name = structure.name,
                                  .robot = &robot.value(),
                                  .assessment = &result.assessment,
                                  .warnings = structure.warnings,
@@ -264,7 +265,7 @@ std::optional<base::Error> find_size_fault(std::size_t module_count) {
     return std::nullopt;
   }
   return base::Error{.code = base::ErrorCode::kUnsupported,
-                     .message = fmt::format("{} modules, allowed are {}: more take a PETSc of "
+                     .message = fmt::format("{} modules, expected at most {}: more take a PETSc of "
                                             "64-bit indices (docs/cluster.md)",
                                             module_count, kMax)};
 }
@@ -302,7 +303,7 @@ int check_in_parts(PetscRanks& ranks, const Options& options, const Structure& s
   is_written = host::all(ranks, is_written);
   if (ranks.rank() == 0 && is_written) {
     is_written = write_answer(options, report_text(structure, part.value(), checked),
-                              report_json(structure, part.value(), checked));
+                              report_json(options.file, structure, part.value(), checked));
   }
   is_written = host::all(ranks, is_written);
   if (is_kept && is_written) {
@@ -395,13 +396,13 @@ void add_file(CLI::App& command, const std::string& name, std::string& file,
 
 /// Adds the options for reading that the commands of holdfast have.
 void add_reading(CLI::App& command, io::ReadOptions& reading) {
-  command.add_option("--robot", reading.robot, "Robot of files that do not say it")
+  command.add_option("--robot", reading.robot, "Robot to assume if the file names none")
       ->type_name("NAME");
   command
       .add_option_function<std::string>(
           "--lattice",
           [&reading](const std::string& name) { reading.lattice = io::find_lattice(name).value(); },
-          "Lattice of files that do not say it, such as VisibleSim's, or VisibleSim's name of the "
+          "Lattice to assume if the file names none, as VisibleSim's, or VisibleSim's name of the "
           "modules")
       ->type_name("NAME")
       ->check([](const std::string& name) {
@@ -441,7 +442,7 @@ CLI::App& add_check(CLI::App& app, Options& options) {
            "remove it when there is an answer");
   check.add_flag("--quiet", options.is_quiet, "Print errors only; the exit code is the answer");
   check.add_flag("--bonded", options.is_bonded,
-                 "Let the ground hold like a module below would: no lifting, no tilting");
+                 "Treat the ground as glued: supports can neither lift nor tilt");
   check.add_flag("--traffic", options.is_traffic_shown,
                  "Print what ranks exchange and how much memory they take");
   check.add_flag("--multigrid", options.is_multigrid_only,
@@ -488,7 +489,7 @@ int run_command(PetscRanks& ranks, int argc, char** argv) {
   const CLI::App& generation = add_generate(app, options);
   add_convert(app, options);
   app.footer(
-      "--ranks N, anywhere: start mpirun with so many ranks, and say what came of it in one line\n"
+      "--ranks N, anywhere: start mpirun with N ranks, and give the outcome in one line\n"
       "and one exit code. Without it mpirun or srun starts the ranks.\n"
       "Options with one dash, such as -ksp_monitor or -log_view, are PETSc's; they come last.\n"
       "Exit: 0 safe, 1 unsafe, 2 undecided, 64 wrong usage, 65 bad input or not writable,\n"

@@ -80,7 +80,7 @@ constexpr std::array kChangeLetters = {
 
 std::optional<std::string> Settings::take(char letter, std::string_view value) {
   const auto wrong = [&](std::string_view form) {
-    return fmt::format("-{} is '{}', allowed is {}", letter, value, form);
+    return fmt::format("-{} is '{}', expected {}", letter, value, form);
   };
   for (const ChangeLetter& row : kChangeLetters) {
     if (row.letter == letter) {

@@ -51,7 +51,7 @@ TEST(Settings, refuse_what_is_no_value_and_say_what_is) {
     Settings settings;
     const auto error = settings.take(letter, value);
     ASSERT_TRUE(error) << letter << ' ' << value;
-    EXPECT_NE(error->find("allowed"), std::string::npos) << *error;
+    EXPECT_NE(error->find("expected"), std::string::npos) << *error;
     EXPECT_TRUE(settings.changes.empty());
   }
 }

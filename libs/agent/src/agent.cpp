@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/agent.hpp"
 
-#include "beams.hpp"
-#include "holdfast/agent/messages.hpp"
-#include "kept_changes.hpp"
-#include "methods.hpp"
+#include "equilibrium/beams.hpp"
+#include "equilibrium/kept_changes.hpp"
+#include "holdfast/agent/features.hpp"
+#include "holdfast/agent/messages/messages.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -38,11 +38,12 @@ Reason reason_of(Doubt doubt) {
 
 Agent::Agent(const Setup& setup, const Identity& identity, const LentMemory* lent)
     : identity_(identity), clock_{.timing = setup.timing}, ws_(setup, identity, lent) {
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
   if (MorePlanned* more = ws_.planned.more_planned(); more != nullptr) {
     announcements_.lend(&more->announced);
   }
-#endif
+  if (ws_.free_faces() != nullptr) {
+    ws_.free_faces()->forget();
+  }
 }
 
 // ---- An event comes in.
@@ -116,7 +117,7 @@ void Agent::handle(const Event& event) {
       announcements_.recall(event.cell, event.told);
       break;
     case EventKind::kStep:
-      kJudgesStages ? tell_step(event) : void();
+      kKeepsAnswers ? tell_step(event) : void();
       break;
     case EventKind::kReceive:
       receive(event.face, event.bytes);
@@ -208,7 +209,7 @@ void Agent::notice_change(Direction face) {
 /// What is left of a packet belongs to a link that is no more.
 void Agent::forget_packet(Direction face) { is_receiving_ = is_receiving_ && packet_face_ != face; }
 
-/// False: no working neighbour sends this message now.
+/// Is false if no working neighbour sends this message now.
 bool Agent::take(Direction face, std::span<const std::uint8_t> message) {
   const auto type = static_cast<MessageType>(message[0]);
   if (type == MessageType::kJoin) {
@@ -239,7 +240,7 @@ bool Agent::take_join(Direction face, const Join& join) {
     return true;
   }
   if (is_newer(join.round, rounds_.current())) {
-    if (kJudgesStages && join.stage != 0) {
+    if (kKeepsAnswers && join.stage != 0) {
       if (!enter_stage(join)) {
         return true;
       }
@@ -249,7 +250,7 @@ bool Agent::take_join(Direction face, const Join& join) {
   } else if (!(join.round == rounds_.current()) || rounds_.is_left()) {
     return true;
   }
-  if (kJudgesStages && static_cast<Stage>(join.stage) != ws_.stage()) {
+  if (kKeepsAnswers && static_cast<Stage>(join.stage) != ws_.stage()) {
     return false;
   }
   const SpanningTree::Wave before = ws_.tree.wave();
@@ -349,7 +350,7 @@ bool Agent::finish_sweep() {
     }
     ws_.links.touch_all();
   } else if (is_root) {
-    if (kJudgesStages && ws_.stages() != nullptr && go_on_in_stages(sweep_.sum())) {
+    if (ws_.stages() != nullptr && go_on_in_stages(sweep_.sum())) {
       return true;
     }
     go_on_with(kKeepsAnswers && order.operation == wire::Operation::kRenew
@@ -366,7 +367,7 @@ bool Agent::end_wave() {
     return false;
   }
   const SpanningTree::Census& census = tree.census();
-  if (kJudgesStages && ws_.stages() != nullptr && find_pieces()) {
+  if (ws_.stages() != nullptr && find_pieces()) {
     return true;
   }
   if (census.doubt != Doubt::kNone) {
@@ -461,7 +462,7 @@ void Agent::leave_round() {
 }
 
 void Agent::abandon_work() {
-  if (kJudgesFaces && ws_.free_faces() != nullptr) {
+  if (ws_.free_faces() != nullptr) {
     ws_.free_faces()->forget();
   }
   sweep_.leave(ws_);
@@ -489,7 +490,7 @@ void Agent::start_round(Stage stage) {
 
 void Agent::enter_round(const Round& round, Stage stage) {
   rounds_.enter(round);
-  if (kJudgesStages && ws_.stages() != nullptr) {
+  if (ws_.stages() != nullptr) {
     hide_links(round, stage);
   }
   announcements_.begin_anew();

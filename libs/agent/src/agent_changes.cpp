@@ -4,10 +4,10 @@
 // What changes after a verdict. A module that is told of a plan, or finds a new neighbour,
 // withdraws its verdict and tells the root, which begins the next one from what all modules keep
 // (conductor/renewal.hpp). Whatever does not fit, here or on the way, is left to a new round.
+#include "equilibrium/kept_changes.hpp"
+#include "equilibrium/survey.hpp"
 #include "holdfast/agent/agent.hpp"
-#include "holdfast/agent/deflation.hpp"
-#include "kept_changes.hpp"
-#include "survey.hpp"
+#include "holdfast/agent/equilibrium/deflation.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -60,8 +60,8 @@ void Agent::tell(const News& news) {
   }
 }
 
-/// Of the parent, to a module that has come: what is planned. Of a child, for the root: if the root
-/// has begun to renew its verdict already, a plan will be reported to it all the same.
+/// News of the parent, to a module that has come: what is planned. News of a child, for the root:
+/// if the root has begun to renew its verdict already, a plan will be reported to it all the same.
 void Agent::take_news(Direction face, const News& news) {
   if (!ws_.tree.children().has(face)) {
     if (ws_.tree.parent().has(face) && ws_.planned.find(news.cell) < 0) {

@@ -59,7 +59,7 @@ void expect_ratio(const TestNetwork& network, double ratio) {
               1e-3 * (1 + std::abs(ratio)));
 }
 
-/// In hops along the axes.
+/// The distance in hops along the axes.
 int distance(const Cell& a, const Cell& b) {
   return std::abs(a.x - b.x) + std::abs(a.y - b.y) + std::abs(a.z - b.z);
 }
@@ -317,7 +317,7 @@ TEST(Agent, a_module_that_never_answers_makes_it_undecided) {
   }
 }
 
-/// It falls silent in the middle of the computation; its neighbours ping it in vain.
+/// The module falls silent in the middle of the computation; its neighbours ping it in vain.
 TEST(Agent, a_module_that_falls_silent_makes_it_undecided) {
   const auto setup = table_setup();
   TestNetwork network(setup, row(6));
@@ -344,7 +344,7 @@ TEST(Agent, what_is_left_after_a_module_is_taken_off_begins_anew) {
   EXPECT_GT(network.agent(0).epoch(), 1);
 }
 
-/// Also after the verdict, and whenever it happens.
+/// This holds after the verdict, too, and whenever it happens.
 TEST(Agent, a_change_at_any_time_gives_the_answer_for_what_is_left) {
   const auto setup = table_setup();
   TestNetwork whole(setup, row(5));
@@ -642,7 +642,7 @@ TEST(Agent, too_many_plans_end_by_withdrawals) {
   expect_no_plans(too_many_here);
 }
 
-/// Such a cell is told to nobody: a neighbour would refuse it, and count its sender as silent.
+/// A cell like that is told to nobody: a neighbour would refuse it, and count its sender as silent.
 TEST(Agent, a_plan_outside_the_lattice_is_lost_until_all_are_withdrawn) {
   const auto setup = table_setup();
   for (const std::int32_t x : {base::kCoordinateMax + 1, -(1 << 23)}) {

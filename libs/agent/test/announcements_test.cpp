@@ -4,7 +4,7 @@
 // What a module keeps of what it was told. The rules are those of announcements.hpp: what a module
 // itself was told last holds; between modules a plan that the robot knows is older than a
 // withdrawal.
-#include "holdfast/agent/announcements.hpp"
+#include "holdfast/agent/groups/announcements.hpp"
 
 #include <gtest/gtest.h>
 
@@ -141,7 +141,7 @@ TEST(Announcements, one_too_many_stays_lost_until_all_are_withdrawn) {
   EXPECT_EQ(list, Announcements());
 }
 
-/// Its bytes would be refused, or name another cell.
+/// The bytes of the cell would be refused, or name another cell.
 TEST(Announcements, a_plan_outside_the_lattice_is_lost) {
   constexpr std::int32_t kFar = base::kCoordinateMax + 1;
   for (const Cell cell : {Cell{kFar, 0, 0}, Cell{0, -kFar - 1, 0}, Cell{0, 0, 1 << 30}}) {

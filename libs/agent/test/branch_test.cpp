@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Elimination over a tree with loops, beside a dense solve of the whole robot.
-#include "holdfast/agent/branch.hpp"
+#include "holdfast/agent/algebra/branch.hpp"
 
 #include <gtest/gtest.h>
 
@@ -104,7 +104,7 @@ void for_each_cut(const Tree& tree, std::size_t i, Visit&& visit) {
   }
 }
 
-/// Which loops pass or close where. False: too many.
+/// Finds which loops pass or close where. False: too many.
 bool survey(const Tree& tree, std::vector<Branch>& branches, Slots& slot_of) {
   bool fits = true;
   for (std::size_t i = branches.size(); i-- > 0 && fits;) {

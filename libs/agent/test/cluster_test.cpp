@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The solve on a tree of rigid clusters, beside a dense solve with six unknowns a cluster.
-#include "holdfast/agent/cluster.hpp"
+#include "holdfast/agent/algebra/cluster.hpp"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "drive.hpp"
-#include "holdfast/agent/deflation.hpp"
+#include "holdfast/agent/equilibrium/deflation.hpp"
 #include "holdfast/base/rng.hpp"
 
 namespace holdfast::agent {
@@ -166,7 +166,7 @@ TEST(Conductor, takes_back_what_is_too_long_of_an_iteration_with_clusters) {
 
 constexpr std::uint32_t kFoundHash = 17;
 
-/// Of an iteration of elimination that ends in these states.
+/// The report of an iteration of elimination that ends in these states.
 Report settled_report(float ratio, std::uint32_t hash, std::uint16_t changed = 0) {
   return {.flags = kMayDiffer, .extent = changed, .number = hash, .reals = {1e-6F, ratio}};
 }

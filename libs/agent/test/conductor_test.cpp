@@ -194,7 +194,7 @@ TEST(Conductor, a_robot_too_large_to_be_counted_is_undecided) {
 
 // ---- Verdicts.
 
-/// From a settled equilibrium of a fixed robot.
+/// Begins from a settled equilibrium of a fixed robot.
 void expect_verdict(float ratio, float error, Verdict verdict, Reason reason) {
   Drive drive;
   drive.to_equilibrium();

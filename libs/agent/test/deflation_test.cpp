@@ -3,9 +3,9 @@
 //
 // The root's part of deflation against a dense model: a stiffness with two slow modes, of which
 // three changes of displacement have something in them. The modules' part is simulated as
-// src/minimal_residuals.hpp has it: what they know of a direction is without its part along the
+// minimal_residuals.hpp has it: what they know of a direction is without its part along the
 // changes, and numbers go over the wire as binary32.
-#include "holdfast/agent/deflation.hpp"
+#include "holdfast/agent/equilibrium/deflation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -102,7 +102,7 @@ VectorXd vector_of(const Along<float>& along) {
   return values;
 }
 
-/// So many solves have ended, and each change was kept.
+/// This many solves have ended, and each change was kept.
 Deflation deflation_with(int changes) {
   Deflation deflation;
   for (int i = 0; i < changes; ++i) {
@@ -268,7 +268,7 @@ double energy_of(const Model& model, const VectorXd& error) {
   return error.dot(model.stiffness * error);
 }
 
-/// In the energy's norm, of the first error.
+/// The distance in the energy's norm, of the first error.
 double distance(const Model& model, const VectorXd& a, const VectorXd& b) {
   const VectorXd solution = model.stiffness.llt().solve(model.load);
   return std::sqrt(energy_of(model, a - b) / energy_of(model, solution));

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "holdfast/agent/conductor.hpp"
+#include "holdfast/agent/conductor/conductor.hpp"
 #include "test_setup.hpp"
 
 /// A conductor driven order by order, from reports made by hand: no robot and no mechanics.
@@ -33,7 +33,7 @@ class Drive {
     return order;
   }
 
-  /// Without planned modules, up to the report of the mass.
+  /// Drives without planned modules up to the report of the mass.
   void to_mass() {
     ASSERT_EQ(next().operation, Operation::kHosts);
     ASSERT_EQ(next().operation, Operation::kMass);
@@ -62,7 +62,7 @@ class Drive {
     ASSERT_EQ(order.operation, Operation::kBegin);
   }
 
-  /// From kBegin or kFactor to the next iteration, whose report is a judgement.
+  /// Drives from kBegin or kFactor to the next iteration, whose report is a judgement.
   void to_judgement() {
     while (order.operation == Operation::kBegin || order.operation == Operation::kFactor) {
       next();
@@ -97,7 +97,7 @@ class Drive {
   Order order;
 };
 
-/// Of an iteration: bound on the error; (r, v), (q, v), (q_older, v).
+/// The report of an iteration: bound on the error; (r, v), (q, v), (q_older, v).
 inline Report iteration_report(float bound, const std::array<double, 3>& products = {},
                                std::uint16_t changed = 0) {
   return {.extent = changed, .reals = {bound, 0.5F}, .products = products};

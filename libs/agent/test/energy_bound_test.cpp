@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "holdfast/agent/energy_bound.hpp"
+#include "holdfast/agent/conductor/energy_bound.hpp"
 
 #include <gtest/gtest.h>
 

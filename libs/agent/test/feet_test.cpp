@@ -4,7 +4,7 @@
 // Does it topple, in whole numbers? Expected values: the centre of mass against the convex hull of
 // all corners (second method, for small robots), and closed forms for rows that are as long as
 // rows can be.
-#include "holdfast/agent/feet.hpp"
+#include "holdfast/agent/cells/feet.hpp"
 
 #include <gtest/gtest.h>
 
@@ -45,7 +45,7 @@ bool has_all_on_one_side(const std::vector<std::array<Real, 2>>& corners, Real t
   return false;
 }
 
-/// Of feet merged one by one.
+/// The range of feet merged one by one.
 SafeRange range_of(const FeetCheck& check, const std::vector<Place>& feet) {
   SafeCorners all;
   for (const Place& foot : feet) {
@@ -76,7 +76,7 @@ struct SmallRobot {
   Place sum;
 };
 
-/// With facets of any width, which go into the setup.
+/// A robot with facets of any width, which go into the setup.
 SmallRobot random_robot(base::Rng& rng, Setup& setup) {
   setup.facet_denominator = 1 + static_cast<std::int32_t>(rng.below(4));
   setup.facet_numerator = 1 + static_cast<std::int32_t>(rng.below(5));

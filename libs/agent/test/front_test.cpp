@@ -3,7 +3,7 @@
 //
 // A front's algebra beside a dense Schur complement; the root's contact problem by its own
 // equations.
-#include "holdfast/agent/front.hpp"
+#include "holdfast/agent/equilibrium/front.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,10 +13,10 @@
 #include <cmath>
 #include <vector>
 
-#include "facets.hpp"
-#include "holdfast/agent/front_contact.hpp"
+#include "holdfast/agent/methods/front_contact.hpp"
 #include "holdfast/base/rng.hpp"
 #include "test_setup.hpp"
+#include "world/facets.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -125,7 +125,8 @@ TEST(Front, condenses_to_the_schur_complement) {
   EXPECT_EQ(front.element_left(index), 0);
 }
 
-/// In two parts: 2^-48, times as much; the second parts alone tell it from single precision.
+/// Twelve digits in two parts are 2^-48, times as much; the second parts alone tell it from single
+/// precision.
 TEST(Front, condenses_to_twelve_digits_where_matrices_have_two_parts) {
   Store store;
   store.memory.has_low_parts = true;
@@ -204,7 +205,7 @@ class Post {
     solve_from(place);
   }
 
-  /// From a place beside u: the loads are what is left over there.
+  /// Solves from a place beside u: the loads are what is left over there.
   void solve_from(const base::Vec6<double>& beside) {
     base::add_to(kept_.u, beside);
     const auto left = left_over(
@@ -274,7 +275,7 @@ TEST(FrontContact, a_foot_rolls_when_the_push_is_too_large) {
   rolls.expect_equilibrium();
 }
 
-/// At the solution nothing is left over; from a place beside it the loads are what the facet does
+/// Nothing is left over at the solution; from a place beside it the loads are what the facet does
 /// not yet carry, and the same solution is found.
 TEST(FrontContact, loads_are_what_is_left_over) {
   for (const auto law : {mechanics::ContactLaw::kRegularised, mechanics::ContactLaw::kUnilateral}) {

@@ -8,13 +8,13 @@
 #include <string_view>
 #include <vector>
 
-#include "holdfast/agent/wire.hpp"
+#include "holdfast/agent/wire/wire.hpp"
 #include "holdfast/base/cell.hpp"
 
 /// Golden text of the wire format, written by hand from docs/wire.md, which shows the same lines.
 namespace holdfast::agent::test {
 
-/// By operation: 1 to 5, 12 to 31.
+/// Orders by operation: 1 to 5, 12 to 31.
 inline constexpr std::array<std::string_view, 25> kGoldenOrders = {
     "05 01 02 01 00 00 fe ff ff 03 00 00",
     "05 02 01 00 02 00 04 00 08 00 10 00 20 00 00 00 00 00",

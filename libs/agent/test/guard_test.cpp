@@ -138,7 +138,7 @@ TEST(Guard, nothing_that_a_sound_robot_says_is_refused) {
   }
 }
 
-/// Before, the sixth cell was written behind the array of five.
+/// The sixth cell was once written behind the array of five.
 TEST(Guard, planned_cells_come_one_by_one) {
   constexpr std::string_view kFirst = "05 01 00";
   expect_refused(row(), {1, kFirst, "05 01 00 00 00 00 00 00 00 01 00 00"});  // Again.
@@ -147,7 +147,7 @@ TEST(Guard, planned_cells_come_one_by_one) {
   expect_refused(row(), {1, kFirst, "05 01 ff 00 00 00 00 00 00 00 00 00", true});
 }
 
-/// Before, each time some planned modules more were emulated, behind the array of six nodes.
+/// Each time some planned modules more were once emulated, behind the array of six nodes.
 TEST(Guard, hosts_are_decided_once) {
   expect_refused(row(), {1, "05 02", "05 02 20 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00"});
   expect_refused(row(),

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "golden.hpp"
-#include "holdfast/agent/messages.hpp"
+#include "holdfast/agent/messages/messages.hpp"
 #include "test_setup.hpp"
 
 namespace holdfast::agent {

@@ -8,7 +8,7 @@
 #include <array>
 #include <vector>
 
-#include "holdfast/agent/link.hpp"
+#include "holdfast/agent/wire/link.hpp"
 
 namespace holdfast::agent {
 namespace {

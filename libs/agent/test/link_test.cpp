@@ -4,7 +4,7 @@
 // Two ends of a line, over a channel that loses, doubles, swaps and spoils packets. What must hold
 // is said by link.hpp: messages arrive once, whole and in order, or the link is lost. Times are the
 // default ones, in microseconds; expected times are sums of them, written out.
-#include "holdfast/agent/link.hpp"
+#include "holdfast/agent/wire/link.hpp"
 
 #include <gtest/gtest.h>
 
@@ -73,7 +73,7 @@ void open(Link& a, Link& b, std::uint16_t nonce_a = 0x1234, std::uint16_t nonce_
   ASSERT_EQ(b.state(), Link::State::kOpen);
 }
 
-/// In percent of packets.
+/// Shares in percent of packets.
 struct Faults {
   std::uint64_t lost = 0;
   std::uint64_t doubled = 0;
@@ -627,7 +627,7 @@ TEST(Link, is_lost_to_modules_of_another_lattice) {
   }
 }
 
-/// So do catoms: they know those of their own lattice only.
+/// Catoms do the same: they know those of their own lattice only.
 TEST(Link, of_another_lattice_is_lost_to_cubes) {
   const LinkTiming timing = {.lattice = wire::kFaceCentredLattice};
   for (const std::uint8_t lattice : {wire::kCubicLattice, wire::kFaceCentredLattice}) {

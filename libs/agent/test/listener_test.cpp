@@ -3,7 +3,7 @@
 //
 // A listener beside the golden conversation of docs/wire.md, cut into packets of every length: what
 // each of them carries is known from where the messages begin.
-#include "holdfast/agent/listener.hpp"
+#include "holdfast/agent/wire/listener.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,13 +3,13 @@
 //
 // What a way would carry: eight numbers against every connection by itself, and bounds against a
 // weight that two ways share, for which the closed form is known.
-#include "holdfast/agent/load_way.hpp"
+#include "holdfast/agent/free_faces/load_way.hpp"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
-#include "holdfast/agent/occupied_cells.hpp"
+#include "holdfast/agent/cells/occupied_cells.hpp"
 #include "holdfast/base/rng.hpp"
 #include "holdfast/mechanics/connector.hpp"
 #include "test_setup.hpp"

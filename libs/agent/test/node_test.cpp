@@ -4,7 +4,7 @@
 // What one module computes alone. Expected values: the blocks of libs/mechanics assembled and
 // multiplied, closed forms, and mechanics' own contact force. The section is lopsided so that no
 // two entries can be mistaken for each other.
-#include "holdfast/agent/node.hpp"
+#include "holdfast/agent/world/node.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The program of modules with little flash (src/methods.hpp): elimination and the polynomial. What
+// The program of modules with little flash (features.hpp): elimination and the polynomial. What
 // it knows it says as the whole program does; what belongs to other methods is refused.
 #include <gtest/gtest.h>
 

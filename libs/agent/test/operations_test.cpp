@@ -3,7 +3,7 @@
 //
 // The table of operations against docs/wire.md: its names, in its order, and how often an order
 // exchanges, from the column "exchanges" there.
-#include "holdfast/agent/operations.hpp"
+#include "holdfast/agent/wire/operations.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ using wire::Operation;
 
 constexpr std::uint16_t kDegree = 7;
 
-/// Before the report, then behind it.
+/// Counts before the report, then behind it.
 struct Counts {
   int before = 0;
   int behind = 0;

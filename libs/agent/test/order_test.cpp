@@ -5,7 +5,7 @@
 // they come nor on the tree: merging is commutative and associative wherever the numbers are exact.
 // The bytes themselves are tested in wire_test.cpp. Comparisons are of all that goes on the wire,
 // as bytes; a report that has been decoded holds nothing else.
-#include "holdfast/agent/order.hpp"
+#include "holdfast/agent/messages/order.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,8 +14,8 @@
 #include <set>
 #include <string>
 
-#include "holdfast/agent/operations.hpp"
-#include "holdfast/agent/step_word.hpp"
+#include "holdfast/agent/cells/step_word.hpp"
+#include "holdfast/agent/wire/operations.hpp"
 #include "holdfast/base/rng.hpp"
 #include "test_setup.hpp"
 
@@ -478,7 +478,7 @@ TEST(Order, changed_facets_do_not_wrap) {
   EXPECT_EQ(many.extent, 0xffff);
 }
 
-/// From whichever side it comes, and whatever comes after it.
+/// NaN survives from whichever side it comes, and whatever comes after it.
 TEST(Order, what_is_not_a_number_survives) {
   const Report one = {.reals = {1, 1}};
   for (const float other : {-1e30F, 0.5F, 2.0F, kNan}) {

@@ -21,8 +21,8 @@ class PacketScript {
  public:
   explicit PacketScript(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
 
-  /// False: a module says what there is not, or does not come to a verdict although the line has
-  /// worked for long enough again.
+  /// Is false if a module says what there is not, or does not come to a verdict although the line
+  /// has worked for long enough again.
   bool run() {
     constexpr Time kTamperedMax = 3000;
     constexpr Time kQuietMax = 40'000;

@@ -4,7 +4,7 @@
 // Who emulates planned modules. Robots of a few modules with trees drawn by hand; the test plays
 // the sweep: masks go up the tree, their union comes down. Expected hosts are the lowest common
 // ancestors of the participants, read off the drawings.
-#include "holdfast/agent/planned.hpp"
+#include "holdfast/agent/groups/planned.hpp"
 
 #include <gtest/gtest.h>
 
@@ -208,8 +208,9 @@ TEST(Planned, one_too_many_is_not_kept) {
   EXPECT_EQ(part.touching(kPlannedMax - 1), Faces{Direction::kMinusX});
 }
 
-/// As many as there may be, in a pile at the end of the row. Only the first touches the robot, the
-/// second is at the top, and from there the indices go down: names must travel against them.
+/// There are as many as there may be, in a pile at the end of the row. Only the first touches the
+/// robot, the second is at the top, and from there the indices go down: names must travel against
+/// them.
 TEST(Planned, as_many_as_there_may_be) {
   std::vector<Cell> pile = {{2, 0, 1}};
   List all = {0};

@@ -3,7 +3,7 @@
 //
 // Which of two rounds is newer: serial number arithmetic [RFC1982], and a robot that has lived
 // through more rounds than 16 bits can count.
-#include "holdfast/agent/round.hpp"
+#include "holdfast/agent/wire/round.hpp"
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ TEST(Rounds, what_follows_is_newer_all_around_the_circle) {
   }
 }
 
-/// Of two different rounds exactly one is newer, or modules would never agree.
+/// Exactly one of two different rounds is newer, or modules would never agree.
 TEST(Rounds, both_sides_think_the_same) {
   for (std::uint32_t a = 0; a <= 0xffff; a += 257) {
     for (std::uint32_t b = 0; b <= 0xffff; b += 16) {

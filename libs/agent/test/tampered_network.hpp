@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "holdfast/agent/operations.hpp"
+#include "holdfast/agent/wire/operations.hpp"
 #include "test_network.hpp"
 
 namespace holdfast::agent::test {

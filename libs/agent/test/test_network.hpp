@@ -130,7 +130,7 @@ class TestNetwork {
     }
   }
 
-  /// It is still there, but does nothing any more.
+  /// The module is still there, but does nothing any more.
   void mute(std::size_t i) { places_[i].is_mute = true; }
 
   bool is_every(const std::function<bool(const Agent&)>& holds) const {
@@ -159,7 +159,7 @@ class TestNetwork {
     });
   }
 
-  /// The same after a change, once the news has gone round: until then an old verdict may stand.
+  /// Runs on after a change, once the news has gone round: until then an old verdict may stand.
   bool run_anew() {
     for (std::size_t i = 0; i < 10 + 4 * size(); ++i) {
       tick();

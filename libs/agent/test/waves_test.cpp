@@ -35,7 +35,7 @@ std::vector<Place> grown_robot(base::Rng& rng, std::size_t count, std::uint64_t 
   return places;
 }
 
-/// By module, the indices of its neighbours.
+/// The indices of its neighbours, by module.
 std::vector<std::vector<std::size_t>> neighbours_of(const std::vector<Place>& places) {
   std::map<Cell, std::size_t> index;
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -87,7 +87,7 @@ int tree_depth(const std::vector<Place>& places, std::uint64_t seed, int packet_
   return depth;
 }
 
-/// In any order, so that no module hears of a wave first because it was put there first.
+/// The places in any order, so that no module hears of a wave first because it was put there first.
 std::vector<Place> shuffled(std::vector<Place> places, base::Rng& rng) {
   for (std::size_t i = places.size() - 1; i > 0; --i) {
     std::swap(places[i], places[rng.below(i + 1)]);

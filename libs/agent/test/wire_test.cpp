@@ -4,7 +4,7 @@
 // The bytes on the wire. Every line of golden text was written by hand from the tables of
 // docs/wire.md, where it stands too (the last test looks it up there); checksums come from a second
 // method, a division of polynomials bit by bit.
-#include "holdfast/agent/wire.hpp"
+#include "holdfast/agent/wire/wire.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,9 +19,9 @@
 #include <string>
 
 #include "golden.hpp"
-#include "holdfast/agent/link.hpp"
-#include "holdfast/agent/operations.hpp"
-#include "holdfast/agent/order.hpp"
+#include "holdfast/agent/messages/order.hpp"
+#include "holdfast/agent/wire/link.hpp"
+#include "holdfast/agent/wire/operations.hpp"
 #include "test_network.hpp"
 
 namespace holdfast::agent {

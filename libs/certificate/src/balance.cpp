@@ -107,7 +107,7 @@ void Balancer::press_edge(std::size_t facet, const Six& gap, Balance& balance) c
   }
   const double pressure = lift / share;
   if (!(pressure > 0 && pressure < std::ldexp(1.0, kMagnitudeBitsMax))) {
-    balance.fault = "a facet that is said to press does not";
+    balance.fault = "a facet that is said to be pressed is not";
     return;
   }
   const auto p = static_cast<Integer>(pressure);

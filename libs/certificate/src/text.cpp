@@ -263,7 +263,7 @@ Module read_module(Words& words, const Certificate& certificate) {
 void read_head(Words& words, Certificate& certificate) {
   words.expect(kTitle);
   if (words.next() != "2") {
-    words.fail("version 2; 'holdfast check --certificate' makes older certificates anew");
+    words.fail("version 2; 'holdfast check --certificate' makes them again");
   }
   words.expect("robot");
   certificate.name = words.line();

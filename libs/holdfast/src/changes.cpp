@@ -79,7 +79,8 @@ base::Result<ChangedStructure> with_changes(const Structure& structure,
   return ChangedStructure{.structure = {.name = structure.name,
                                         .document = std::move(document),
                                         .robot = std::move(robot).value(),
-                                        .warnings = structure.warnings},
+                                        .warnings = structure.warnings,
+                                        .origin = structure.origin},
                           .announcements = std::move(announcements),
                           .attachments = std::move(attachments)};
 }

@@ -280,9 +280,10 @@ base::Result<DistributedRun> simulate(const Structure& structure, const CheckRes
   return simulate(structure.robot, exact, options, progress);
 }
 
-std::string picture_svg(const Structure& structure, const DistributedRun& run) {
+std::string picture_svg(const Structure& structure, const DistributedRun& run,
+                        const io::FigureOptions& figure) {
   return io::write_svg(structure.robot, run.view, structure.name,
-                       structure.document.extension.obstacles);
+                       structure.document.extension.obstacles, figure);
 }
 
 }  // namespace holdfast

@@ -28,6 +28,7 @@ const std::vector<Endings>& formats() {
       {FileFormat::kHoldfastJson, "holdfast JSON", {".json"}},
       {FileFormat::kCsv, "CSV", {".csv"}},
       {FileFormat::kSvg, "SVG", {".svg"}},
+      {FileFormat::kFigure, "SVG, PNG or PDF", {".svg", ".png", ".pdf"}},
       {FileFormat::kVtu, "VTK's XML format", {".vtu"}},
       {FileFormat::kPvd, "a list of .vtu files", {".pvd"}},
       {FileFormat::kHtml, "HTML", {".html", ".htm"}}};
@@ -48,6 +49,10 @@ std::string ending_of(std::string_view path) {
 }
 
 }  // namespace
+
+bool has_ending(std::string_view path, std::string_view ending) {
+  return ending_of(path) == ending;
+}
 
 std::optional<base::Error> find_foreign_ending(FileFormat format, std::string_view path) {
   const std::string ending = ending_of(path);

@@ -10,7 +10,6 @@
 #include <thread>
 
 #include "holdfast/host/team.hpp"
-#include "holdfast/io/report_head.hpp"
 #include "holdfast/limit/robot.hpp"
 #include "holdfast/model/families.hpp"
 #include "report_entry.hpp"
@@ -18,7 +17,8 @@
 namespace holdfast {
 
 io::ReportEntry entry_of(const Structure& structure, const CheckResult& result) {
-  return {.name = structure.name,
+  return {.origin = structure.origin,
+          .name = structure.name,
           .robot = &structure.robot,
           .assessment = &result.assessment,
           .warnings = structure.warnings,
@@ -83,7 +83,13 @@ base::Result<Structure> load_file(const std::filesystem::path& path, int thread_
   if (!text) {
     return text.error();
   }
-  return load_text(text.value(), path.stem().string(), thread_count, options);
+  auto loaded = load_text(text.value(), path.stem().string(), thread_count, options);
+  if (!loaded) {
+    return loaded;
+  }
+  Structure structure = std::move(loaded).value();
+  structure.origin.file = path.string();
+  return structure;
 }
 
 base::Result<io::Document> generate(std::string_view family, std::size_t size) {
@@ -242,9 +248,10 @@ std::string report_text(const Structure& structure, const CheckResult& result,
   return io::write_report_text(entry);
 }
 
-std::string picture_svg(const Structure& structure, const CheckResult& result) {
+std::string picture_svg(const Structure& structure, const CheckResult& result,
+                        const io::FigureOptions& figure) {
   return io::write_svg(structure.robot, result.assessment, structure.name,
-                       structure.document.extension.obstacles);
+                       structure.document.extension.obstacles, figure);
 }
 
 std::string picture_vtu(const Structure& structure, const CheckResult& result) {
@@ -262,8 +269,8 @@ void write_connections_csv(std::ostream& out, const Structure& structure, const 
   io::write_connections_csv(out, structure.robot, result.assessment, options);
 }
 
-std::string error_json(const base::Error& error, std::string_view name) {
-  return io::write_error_json(error, name);
+std::string error_json(const base::Error& error, const io::ReportOrigin& origin) {
+  return io::write_error_json(error, origin);
 }
 
 std::string describe(const base::Error& error, std::string_view file) {

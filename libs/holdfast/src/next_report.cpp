@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "holdfast/io/report_head.hpp"
 #include "holdfast/trial.hpp"
 
 namespace holdfast {
@@ -55,7 +54,9 @@ void write_next_json(std::ostream& out, const Structure& structure, const NextRe
   std::string text;
   io::JsonStream json(text);
   json.begin_object();
-  io::write_report_head(json, "next");
+  io::write_report_head(json, {.command = "next",
+                               .origin = structure.origin,
+                               .module_count = structure.robot.modules().size()});
   write_next_members(json, structure, result, options);
   json.end_object();
   out << text << "\n";
@@ -88,10 +89,11 @@ std::string next_text(const Structure& structure, const NextResult& result,
 }
 
 std::string next_svg(const Structure& structure, const CheckResult& checked,
-                     const NextResult& result, const NextReportOptions& options) {
+                     const NextResult& result, const NextReportOptions& options,
+                     const io::FigureOptions& figure) {
   const auto spec = io::make_spec(structure.document);
   if (!spec) {
-    return picture_svg(structure, checked);
+    return picture_svg(structure, checked, figure);
   }
   model::RobotSpec grown = spec.value();
   std::vector<io::Ghost> ghosts;
@@ -101,10 +103,11 @@ std::string next_svg(const Structure& structure, const CheckResult& checked,
   }
   const auto robot = model::Robot::create(grown);
   if (!robot) {
-    return picture_svg(structure, checked);  // Each of them can be there, but not all together.
+    return picture_svg(structure, checked,
+                       figure);  // Each of them can be there, but not all together.
   }
   return io::write_svg_with_ghosts(robot.value(), ghosts, checked.assessment, structure.name,
-                                   structure.document.extension.obstacles);
+                                   structure.document.extension.obstacles, figure);
 }
 
 }  // namespace holdfast

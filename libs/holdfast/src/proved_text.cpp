@@ -47,7 +47,7 @@ std::string what_is_proved(const ProvedMoves& proved) {
   const char* safe = proved.task.ignores_mechanics ? "" : "safe ";
   const char* none = proved.task.ignores_mechanics ? "possible" : "safe";
   return fmt::format(
-      "no {}moves lead there: {} {}, {} {} {} judged anew, none {}", safe,
+      "no {}moves lead there: {} {}, {} {} {} judged again, none {}", safe,
       host::counted(check.shape_count, "shape"),
       proved.is_backward ? "from which the target is reached" : "that can be reached",
       host::counted(check.unsafe_count, "move"), proved.is_backward ? "into" : "out of",

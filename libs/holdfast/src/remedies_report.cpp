@@ -36,7 +36,7 @@ std::string list_text(RemedyKind kind, const RemedyList& list) {
   if (best.judgement.load_ratio_max) {
     text += fmt::format(": load ratio {}", io::beside_one(*best.judgement.load_ratio_max, 4));
   }
-  return text + fmt::format("; {} of {} would do", list.safe.size(), list.tried_count);
+  return text + fmt::format("; {} of {} would suffice", list.safe.size(), list.tried_count);
 }
 
 void write_list(io::JsonStream& json, const RemedyList& list) {

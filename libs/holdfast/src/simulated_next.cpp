@@ -9,7 +9,6 @@
 #include <map>
 #include <numeric>
 
-#include "holdfast/io/report_head.hpp"
 #include "holdfast/plan/candidates.hpp"
 
 namespace holdfast {
@@ -351,7 +350,9 @@ void write_simulated_next_json(std::ostream& out, const Structure& structure,
   std::string text;
   io::JsonStream json(text);
   json.begin_object();
-  io::write_report_head(json, "simulate");
+  io::write_report_head(json, {.command = "simulate",
+                               .origin = structure.origin,
+                               .module_count = structure.robot.modules().size()});
   write_next_members(json, structure, simulated.next, options);
   json.key("distributed");
   json.begin_object();

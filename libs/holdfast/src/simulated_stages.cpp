@@ -9,7 +9,6 @@
 #include <ostream>
 #include <utility>
 
-#include "holdfast/io/report_head.hpp"
 #include "report_entry.hpp"
 
 namespace holdfast {
@@ -255,7 +254,9 @@ void write_simulated_stages_json(std::ostream& out, const StepsFile& file,
     }
   }
   json.begin_object();
-  io::write_report_head(json, "simulate");
+  io::write_report_head(
+      json,
+      {.command = "simulate", .origin = file.origin, .module_count = file.document.modules.size()});
   json.member("name", file.name);
   json.member("verdict", verdict::name(stages.verdict()));
   io::write_stage_id(json, "first_unsafe", stages.first_unsafe());

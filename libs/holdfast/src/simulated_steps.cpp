@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "distributed_parts.hpp"
-#include "holdfast/io/report_head.hpp"
 #include "report_entry.hpp"
 
 namespace holdfast {
@@ -385,7 +384,9 @@ void write_simulated_steps_json(std::ostream& out, const StepsFile& file,
   std::string text;
   io::JsonStream json(text);
   json.begin_object();
-  io::write_report_head(json, "simulate");
+  io::write_report_head(
+      json,
+      {.command = "simulate", .origin = file.origin, .module_count = file.document.modules.size()});
   json.member("name", file.name);
   json.member("time_share_median", steps.time_share_median);
   json.member("bytes_per_module", steps.bytes_per_module);

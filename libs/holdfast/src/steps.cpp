@@ -11,7 +11,8 @@ namespace holdfast {
 namespace {
 
 io::StepsEntry entry_of(const StepsFile& file, const StepsResult& result) {
-  return {.name = file.name,
+  return {.origin = file.origin,
+          .name = file.name,
           .document = &file.document,
           .judgement = &result.judgement,
           .warnings = file.warnings,
@@ -37,8 +38,10 @@ base::Result<StepsFile> load_steps(const std::filesystem::path& path,
                        .where = io::step_list(document)};
   }
   std::string name = document.name.empty() ? path.stem().string() : document.name;
-  return StepsFile{
-      .name = std::move(name), .document = std::move(document), .warnings = std::move(warnings)};
+  return StepsFile{.name = std::move(name),
+                   .document = std::move(document),
+                   .warnings = std::move(warnings),
+                   .origin = {.file = path.string()}};
 }
 
 base::Result<StepsResult> judge_steps(const StepsFile& file, const StepsOptions& options) {
@@ -69,8 +72,9 @@ void write_steps_json(std::ostream& out, const StepsFile& file, const StepsResul
   io::write_steps_json(out, entry_of(file, result));
 }
 
-std::string steps_svg(const StepsFile& file, const StepsResult& result) {
-  return io::write_steps_svg(entry_of(file, result));
+std::string steps_svg(const StepsFile& file, const StepsResult& result,
+                      const io::FigureOptions& figure) {
+  return io::write_steps_svg(entry_of(file, result), figure);
 }
 
 std::string steps_html(const StepsFile& file, const StepsResult& result) {
@@ -132,7 +136,7 @@ std::optional<base::Error> write_steps_vtk(const std::filesystem::path& path, co
   if (io::one_line(name) != name) {
     return base::Error{.code = base::ErrorCode::kBadInput,
                        .message =
-                           "names of .vtu files are written into the .pvd file, allowed is "
+                           "names of .vtu files are written into the .pvd file, expected "
                            "UTF-8 without control characters"};
   }
   plan::RobotState robot(sequence.value().start);

@@ -205,7 +205,7 @@ struct Fault {
 
 TEST(FacadeProperties, an_error_names_the_cell_and_the_rule) {
   const std::vector<Fault> faults = {
-      {{{0, 0, 0}, {1, 0, 0}, {1, 0, 0}}, {}, {}, "(1,0,0)", "allowed is one"},
+      {{{0, 0, 0}, {1, 0, 0}, {1, 0, 0}}, {}, {}, "(1,0,0)", "expected one"},
       {{{0, 0, 0}, {5, 0, 0}}, {}, {}, "(5,0,0)", "not connected"},
       {{{0, 0, 0}, {3'000'000, 0, 0}}, {}, {}, "(3000000,0,0)", "outside the lattice"},
       {{{0, 0, 0}, {0, 0, 1}}, {{0, 0, 1}}, {}, "(0,0,1)", "occupied by an existing module"},

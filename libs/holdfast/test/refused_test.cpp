@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "holdfast/agent/wire.hpp"
+#include "holdfast/agent/wire/wire.hpp"
 #include "holdfast/distributed.hpp"
 
 namespace holdfast {

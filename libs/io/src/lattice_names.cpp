@@ -42,7 +42,7 @@ base::Result<base::Lattice> find_lattice(std::string_view name) {
   }
   return base::Error{
       base::ErrorCode::kBadInput,
-      fmt::format("the lattice {} is unknown, allowed are {}", excerpt(name), all_names()), ""};
+      fmt::format("the lattice {} is unknown, expected {}", excerpt(name), all_names()), ""};
 }
 
 }  // namespace holdfast::io

@@ -41,6 +41,6 @@ std::optional<Color> parse_color(std::string_view text);
 std::optional<Color> nearest_color(std::string_view text);
 
 inline constexpr std::string_view kColorsAllowed =
-    "allowed are three integers from 0 to 255, such as 1,2,3, or #010203";
+    "expected three integers from 0 to 255, such as 1,2,3, or #010203";
 
 }  // namespace holdfast::io

@@ -112,7 +112,7 @@ class ObstacleListReader {
     const auto is_good = [](auto value) { return kCoordinateRange.contains(value); };
     if (!triple || !std::ranges::all_of(*triple, is_good)) {
       refuse(
-          fmt::format("{} of <obstacle> is {}, allowed are three integers from {} to {}, such "
+          fmt::format("{} of <obstacle> is {}, expected three integers from {} to {}, such "
                       "as 1,2,3",
                       name, excerpt(text), kCoordinateRange.lowest, kCoordinateRange.highest));
       return {};
@@ -123,7 +123,7 @@ class ObstacleListReader {
   model::Hold read_hold(const std::string& text) {
     const auto found = std::ranges::find(kHoldNames, text);
     if (found == kHoldNames.end()) {
-      refuse(fmt::format("hold of <obstacle> is {}, allowed are {} and {}", excerpt(text),
+      refuse(fmt::format("hold of <obstacle> is {}, expected {} or {}", excerpt(text),
                          kHoldNames[0], kHoldNames[1]));
       return {};
     }
@@ -133,7 +133,7 @@ class ObstacleListReader {
   double read_friction(const std::string& text) {
     const auto friction = parse_number<double>(text);
     if (!friction || !(*friction >= 0)) {
-      refuse(fmt::format("friction of <obstacle> is {}, allowed is a number that is not negative",
+      refuse(fmt::format("friction of <obstacle> is {}, expected a number that is not negative",
                          excerpt(text)));
     }
     return friction.value_or(0);

@@ -118,7 +118,7 @@ std::optional<Color> Reading::take_color(std::string_view element, std::string_v
 void Reading::take_known_answer(KnownAnswer answer, const Where& where) {
   if (!is_known_verdict(answer.verdict)) {
     fail({base::ErrorCode::kBadInput,
-          fmt::format("the known verdict is {}, allowed are safe, overload, unstable",
+          fmt::format("the known verdict is {}, expected safe, overload or unstable",
                       excerpt(answer.verdict)),
           where()});
   }
@@ -142,7 +142,7 @@ void Reading::take_robot(const std::string& named, const ReadOptions& options, c
     std::ranges::transform(model::robot_catalogue(), std::back_inserter(names),
                            &model::CatalogueRobot::name);
     fail({base::ErrorCode::kBadInput,
-          fmt::format("the robot {} is none of the catalogue, which has {}", excerpt(name),
+          fmt::format("unknown robot {}; the catalogue has {}", excerpt(name),
                       fmt::join(names, ", ")),
           named.empty() ? "" : where()});
     return;
@@ -208,7 +208,7 @@ void Reading::read_grid(const Where& where) {
   const auto size = parse_triple<std::int32_t>(*text);
   if (!size || !std::ranges::all_of(*size, [](auto n) { return kGridRange.contains(n); })) {
     fail({base::ErrorCode::kBadInput,
-          fmt::format("gridSize is {}, allowed are three integers from {} to {}, such as 8,3,4",
+          fmt::format("gridSize is {}, expected three integers from {} to {}, such as 8,3,4",
                       excerpt(*text), kGridRange.lowest, kGridRange.highest),
           where()});
     return;

@@ -82,8 +82,9 @@ std::string_view fixed_text(ReasonCode code) {
       return "proved, with the states of all facets, for one solution of the paper's contact law, "
              "which may have others";
     case ReasonCode::kProvedForces:
-      return "proved, with which facets press, for the exact contact law, whose forces are unique "
-             "then";
+      return "proved, with the facets that are pressed, for the exact contact law, whose forces "
+             "are "
+             "then unique";
     case ReasonCode::kProvedUnique:
       return "proved; the solution is unique";
     case ReasonCode::kNoVerdictOfTheRobot:
@@ -93,14 +94,14 @@ std::string_view fixed_text(ReasonCode code) {
     case ReasonCode::kRigidUndecided:
       return "whether contact forces hold it was not found out";
     case ReasonCode::kModelFalls:
-      return "the model-based check says unstable, as no facet presses all over and the corners "
-             "that press lie on one line; contact forces of a rigid body that would hold it do "
+      return "the model-based check says unstable, as no facet is fully pressed and the pressed "
+             "corners lie on one line; contact forces of a rigid body that would hold it do "
              "exist, so it may depend on how the load came, and is not safe";
     case ReasonCode::kStatesDisagree:
       return "contact forces of one solution hold it, but the contact laws, which allow several "
              "here, have states in which it falls, too";
     case ReasonCode::kLoadsTogether:
-      return "load ratios and the weight factor are of all loads together, weight and payloads";
+      return "load ratios and the weight factor include payloads";
     default:
       return {};
   }
@@ -196,7 +197,7 @@ std::string reason_text(const verdict::Reason& reason, std::span<const base::Cel
              (reason.quoted.empty() ? "moves" : reason.quoted);
     case ReasonCode::kMaySlip:
       return fmt::format(
-          "a facet of {} may slip: its sideways force is {} of what presses it, its friction {}; "
+          "a facet of {} may slip: its sideways force is {} of its pressure, its friction {}; "
           "other contact forces may hold the robot, so nothing is certain",
           model::text(cells[0]), beside_one(n[1], 4), n[2]);
     case ReasonCode::kGapsOpen:

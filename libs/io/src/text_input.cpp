@@ -125,8 +125,9 @@ std::string place_at(std::string_view text, std::size_t offset) {
 std::optional<base::Error> find_input_fault(std::string_view text) {
   using base::ErrorCode;
   if (text.size() > kFileBytesMax) {
-    return base::Error{ErrorCode::kUnreadable, fmt::format("the input has {} bytes, allowed are {}",
-                                                           text.size(), kFileBytesMax)};
+    return base::Error{
+        ErrorCode::kUnreadable,
+        fmt::format("the input has {} bytes, expected at most {}", text.size(), kFileBytesMax)};
   }
   if (text.find_first_not_of(kBlanks) == std::string_view::npos) {
     return base::Error{ErrorCode::kBadInput,
@@ -136,7 +137,7 @@ std::optional<base::Error> find_input_fault(std::string_view text) {
   if (const auto offset = find_bad_byte(text)) {
     return base::Error{
         ErrorCode::kBadInput,
-        fmt::format("the byte 0x{:02X} is no text, allowed is UTF-8 without zero bytes",
+        fmt::format("the byte 0x{:02X} is no text, expected UTF-8 without zero bytes",
                     static_cast<unsigned char>(text[*offset])),
         line_at(text, *offset)};
   }
@@ -145,7 +146,7 @@ std::optional<base::Error> find_input_fault(std::string_view text) {
 
 std::optional<std::string> find_string_fault(std::string_view text) {
   if (text.size() > kStringBytesMax) {
-    return fmt::format("has {} bytes, allowed are {}", text.size(), kStringBytesMax);
+    return fmt::format("has {} bytes, expected at most {}", text.size(), kStringBytesMax);
   }
   if (const auto offset = find_bad_byte(text); offset && text[*offset] != '\0') {
     return "is not UTF-8";
@@ -164,7 +165,7 @@ std::optional<std::string> find_name_fault(std::string_view name) {
     return std::nullopt;
   }
   return fmt::format(
-      "{} cannot be a name, allowed are up to {} letters, digits, '_', ':', '-', '.', of which the "
+      "{} cannot be a name, expected up to {} letters, digits, '_', ':', '-', '.', of which the "
       "first is a letter or '_'",
       excerpt(name), kNameBytesMax);
 }

@@ -141,11 +141,11 @@ TEST(BadInput, of_endless_strings_is_refused) {
     expect_refusal({begin + nine_million, "line 1", "longer than the 8388608 bytes"});
   }
   expect_refusal({json("\"modules\": [], \"name\": \"" + a_million + a_million + "\""), "/name",
-                  "has 2000000 bytes, allowed are 1048576"});
+                  "has 2000000 bytes, expected at most 1048576"});
   expect_refusal(
       {"<world " + a_million + "=''><blockList/></world>", "line 1", "up to 256 letters"});
   expect_refusal({"<world a='" + a_million + a_million + "'><blockList/></world>", "line 1",
-                  "has 2000000 bytes, allowed are 1048576"});
+                  "has 2000000 bytes, expected at most 1048576"});
 }
 
 TEST(BadInput, of_endless_objects_is_refused) {
@@ -196,7 +196,7 @@ TEST(BadInput, of_visiblesim_names_what_was_found_and_what_is_allowed) {
                                "1 2 3", "1,2,99999999999", "1,2,1000001", "1,2,0x10", "nan,0,0"}) {
     bad_block("position=\"" + std::string(position) + "\"",
               "position of <block> is '" + std::string(position) +
-                  "', allowed are three integers from -1000000 to 1000000, such as 1,2,3");
+                  "', expected three integers from -1000000 to 1000000, such as 1,2,3");
   }
   bad_block("position=\"0,0,0\" position=\"1,1,1\"", "'position' of 'block' is there twice");
   bad_block("position=\"0,0,0\" id=\"" + repeated("\x7F", 3) + "\"\n id=\"1\"", "'id'");
@@ -223,12 +223,12 @@ TEST(BadInput, of_parameters_is_refused) {
   for (const char* value : {"nan", "inf", "-inf", "1e999", "heavy", "", "0.06 kg", "0,06"}) {
     expect_refusal(
         {"<parameters globalMass=\"" + std::string(value) + "\"/><world/>", "line 1",
-         "globalMass of <parameters> is '" + std::string(value) + "', allowed is a finite number"});
+         "globalMass of <parameters> is '" + std::string(value) + "', expected a finite number"});
   }
   expect_refusal({"<parameters globalSupportZ=\"0.5\"/><world/>", "line 1",
-                  "globalSupportZ of <parameters> is '0.5', allowed is an integer"});
+                  "globalSupportZ of <parameters> is '0.5', expected an integer"});
   expect_refusal({"<world><blockList/><holdfast><knownAnswer verdict=\"fine\"/></holdfast></world>",
-                  "line 1", "the known verdict is 'fine', allowed are safe, overload, unstable"});
+                  "line 1", "the known verdict is 'fine', expected safe, overload or unstable"});
 }
 
 TEST(BadInput, that_breaks_the_rules_of_json_is_refused_with_its_line) {

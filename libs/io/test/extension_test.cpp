@@ -378,9 +378,9 @@ TEST(Version2, says_what_is_wrong_and_what_is_allowed) {
   bad(R"("material": {"foot_mm": -1})", "/material/foot_mm", "not negative");
   bad(R"("material": {"shear_strength": 1})", "/material/shear_strength", "'shear_strength_n'");
   bad(R"("material": {"strength_n": 1, "strength_lateral_n": 1})", "/material/strength_n",
-      "allowed is one of the two ways");
+      "expected one of the two ways");
   bad(R"("kinds": {"a": {"strength_n": 1, "strength_vertical_n": 1}})", "/kinds/a/strength_n",
-      "allowed is one of the two ways");
+      "expected one of the two ways");
   bad(R"("obstacles": [{"from": [0,0,0]}])", "/obstacles/0", R"(either "from" and "to")");
   bad(R"("obstacles": [{"cells": []}])", "/obstacles/0", "at least one");
   bad(R"("obstacles": [{"cells": [[0,0,0]], "to": [0,0,0]}])", "/obstacles/0", "either");
@@ -394,10 +394,10 @@ TEST(Version2, says_what_is_wrong_and_what_is_allowed) {
   bad(R"("steps": [{"release": [[[0,0,0]]]}])", "/steps/0/release/0",
       "expected the two cells of a connection, found 1");
   expect_refusal(version_2(R"("modules": [{"cell": [0,0,0], "kind": "b"}], "kinds": {"a": {}})"),
-                 "/modules/0/kind", "the kind 'b' is none of those in \"kinds\", which has 'a'");
+                 "/modules/0/kind", "the kind 'b' is not in \"kinds\", which has 'a'");
   expect_refusal(
       version_2(R"("modules": [], "planned": [[0,0,0], {"cell": [1,0,0], "kind": "b"}])"),
-      "/planned/1/kind", "the kind 'b' is none of those in \"kinds\", which has none");
+      "/planned/1/kind", "the kind 'b' is not in \"kinds\", which has none");
   expect_refusal(version_2(R"("modules": [{"cell": [0,0,0], "knd": "b"}])"), "/modules/0/knd",
                  "is unknown");
 }

@@ -3,6 +3,8 @@
 // Reports say what the assessment says; numbers are compared with the assessment and with statics.
 #include "holdfast/io/report.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -193,12 +195,42 @@ TEST(Report, says_first_what_it_is) {
   EXPECT_EQ(*member++, "emulate");
   EXPECT_EQ(member.key(), "program");
   EXPECT_EQ(*member++, "holdfast " + std::string(program_version()));
+  EXPECT_EQ(member.key(), "robot");
+  EXPECT_EQ(*member++, Json({{"modules", chain.robot.modules().size()}}));
   EXPECT_EQ(member.key(), "name");
+}
+
+/// Where it is from and what was asked, as the command line had it, in both layouts of a head.
+TEST(Report, says_of_which_file_it_is_and_with_which_options) {
+  const ReportHead head = {
+      .command = "move",
+      .origin = {.file = "-",
+                 .target = "\"b\".json",
+                 .options = {{{.name = "pivot", .values = {}},
+                              {.name = "within", .values = {"0,0,0:9,9,9"}},
+                              {.name = "set", .values = {"mass_kg=1"}, .is_list = true}}}},
+      .module_count = 3};
+  const Json expected = {
+      {"robot", {{"file", "-"}, {"target", "\"b\".json"}, {"modules", 3}}},
+      {"options", {{"pivot", true}, {"within", "0,0,0:9,9,9"}, {"set", {"mass_kg=1"}}}}};
+  std::string text;
+  JsonStream json(text);
+  json.begin_object();
+  write_report_head(json, head);
+  json.end_object();
+  const Json lines = Json::parse(fmt::format("{{{}}}", fmt::join(report_head(head), ",")));
+  for (const Json& report : {Json::parse(text), lines}) {
+    EXPECT_EQ(report["robot"], expected["robot"]);
+    EXPECT_EQ(report["options"], expected["options"]);
+    EXPECT_EQ(report["report"], "move");
+  }
+  EXPECT_EQ(report_head(head)[4],
+            R"("robot": {"file": "-", "target": "\"b\".json", "modules": 3})");
 }
 
 TEST(Report, of_a_failure_is_an_object_with_its_place) {
   const Json report =
-      Json::parse(write_error_json({.message = "bad\n", .where = "line 3"}, "a.xml"));
+      Json::parse(write_error_json({.message = "bad\n", .where = "line 3"}, {.file = "a.xml"}));
   EXPECT_EQ(report["name"], "a.xml");
   EXPECT_EQ(report["error"], "bad\n");
   EXPECT_EQ(report["where"], "line 3");

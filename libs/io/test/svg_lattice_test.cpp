@@ -426,7 +426,7 @@ TEST(SvgLattice, facets_say_what_they_do) {
   const auto legend = [](const mechanics::ContactState& state) {
     return standing_prism(state).texts("legend");
   };
-  EXPECT_NE(legend({.pressed = true}).find("facet presses"), std::string::npos);
+  EXPECT_NE(legend({.pressed = true}).find("facet pressed"), std::string::npos);
   EXPECT_NE(legend({.pressed = false}).find("facet open"), std::string::npos);
   EXPECT_NE(legend({.pressed = true, .tilt_x = 1}).find("facet tilts"), std::string::npos);
   // With its loads unknown it only touches.

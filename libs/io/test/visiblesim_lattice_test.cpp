@@ -265,7 +265,7 @@ TEST(VisibleSimObstacles, say_what_is_wrong) {
   bad("<obstacle/>", "has no attribute 'position'");
   bad("<obstacle position=\"1,2\"/>", "position of <obstacle> is '1,2'");
   bad("<obstacle position=\"1,2,9999999\"/>", "from -1000000 to 1000000");
-  bad("<obstacle position=\"1,2,3\" hold=\"glued\"/>", "allowed are contact and bonded");
+  bad("<obstacle position=\"1,2,3\" hold=\"glued\"/>", "expected contact or bonded");
   bad("<obstacle position=\"1,2,3\" friction=\"-1\"/>", "not negative");
   bad("<obstacle position=\"1,2,3\" to=\"1,2,2\"/>", "may be below");
   bad("<obstacle position=\"1,2,3\" hld=\"bonded\"/>", "did you mean 'hold'?");

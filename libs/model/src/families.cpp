@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <random>
 #include <sstream>
 
@@ -21,11 +22,14 @@ using Cells = std::vector<Cell>;
 constexpr std::int32_t kScaffoldStep = 4;
 constexpr std::int32_t kPortalThickness = 4;
 constexpr std::int32_t kWallThickness = 4;
+constexpr std::int32_t kArchDepth = 2;
+constexpr std::int32_t kStairsWidth = 2;
+constexpr std::int32_t kCraneFoot = 3;
 constexpr std::int32_t kPierWidth = 8;
 constexpr std::int32_t kPierHeight = 10;
 constexpr std::size_t kBallLayersMax = 1000;  ///< Beyond there are more modules than is allowed.
 
-constexpr std::array<FamilyInfo, 11> kFamilies = {{
+constexpr std::array<FamilyInfo, 15> kFamilies = {{
     {Family::kArm, "arm", "SIZE modules, a foot of 6 and one row to +x", 6},
     {Family::kCube, "cube", "SIZE x SIZE x SIZE, solid", 1},
     {Family::kTower, "tower", "3 x 3 modules, SIZE high", 1},
@@ -38,6 +42,10 @@ constexpr std::array<FamilyInfo, 11> kFamilies = {{
     {Family::kSheet, "sheet", "hexagonal, SIZE wide and SIZE high, one thick", 1, base::kHexagonal},
     {Family::kPrismWall, "prism-wall", "hexagonal prisms, SIZE wide, SIZE high, 4 thick", 1,
      base::kHexagonalPrism},
+    {Family::kArch, "arch", "half a ring SIZE wide, 2 thick, 2 deep", 4},
+    {Family::kCrane, "crane", "a mast SIZE high on a foot of 3 x 3, a jib of SIZE/2", 3},
+    {Family::kStairs, "stairs", "SIZE steps, solid, 2 wide", 1},
+    {Family::kWall, "wall", "SIZE wide and SIZE high, one thick", 1},
 }};
 
 /// A whole number in [0, bound) as CPython's random.Random.randrange draws it: as many of the upper
@@ -149,6 +157,39 @@ Cells ball(std::int32_t size) {
   return cells;
 }
 
+/// Whether a cell of an arch's plane is one of the half ring, in half pitches from its centre.
+bool is_in_arch(std::int64_t size, const Cell& cell) {
+  const std::int64_t along = 2 * std::int64_t{cell.x} - (size - 1);
+  const std::int64_t up = 2 * std::int64_t{cell.z};
+  const std::int64_t squared = along * along + up * up;
+  return squared <= size * size && squared > (size - 4) * (size - 4);
+}
+
+/// The number of whole z from 0 on with (2 z)^2 <= rest; none for a negative rest.
+std::int64_t count_up_to(std::int64_t rest) {
+  if (rest < 0) {
+    return 0;
+  }
+  auto z = static_cast<std::int64_t>(std::sqrt(static_cast<double>(rest)) / 2);
+  while (4 * z * z > rest) {
+    --z;
+  }
+  while (4 * (z + 1) * (z + 1) <= rest) {
+    ++z;
+  }
+  return z + 1;
+}
+
+std::size_t arch_count(std::int64_t size) {
+  std::int64_t count = 0;
+  for (std::int64_t x = 0; x < size; ++x) {
+    const std::int64_t along = 2 * x - (size - 1);
+    count += count_up_to(size * size - along * along) -
+             count_up_to((size - 4) * (size - 4) - along * along);
+  }
+  return static_cast<std::size_t>(kArchDepth * count);
+}
+
 /// The product a * b, or the largest number if that overflows.
 std::size_t times(std::size_t a, std::size_t b) {
   std::size_t product = 0;
@@ -197,9 +238,16 @@ std::size_t family_count(Family family, std::size_t size) {
       return count;
     }
     case Family::kSheet:
+    case Family::kWall:
       return times(size, size);
     case Family::kPrismWall:
       return times(kWallThickness, times(size, size));
+    case Family::kArch:
+      return arch_count(static_cast<std::int64_t>(size));
+    case Family::kCrane:
+      return kCraneFoot * kCraneFoot + (size - 1) + size / 2 + size / 4;
+    case Family::kStairs:
+      return times(size, size + 1);
     case Family::kArm:
     case Family::kGrowth:
       break;
@@ -223,7 +271,15 @@ std::optional<CellBox> family_box(Family family, std::size_t wanted) {
     case Family::kBridge:
       return CellBox{{0, 0, 0}, {std::max(size, kPierWidth), kPierWidth, kPierHeight + 3}};
     case Family::kSheet:
+    case Family::kWall:
       return CellBox{{0, 0, 0}, {size, 1, size}};
+    case Family::kArch:
+      return CellBox{{0, 0, 0}, {size, kArchDepth, size / 2 + 1}};
+    case Family::kCrane:
+      return CellBox{{std::min(0, 1 - size / 4), 0, 0},
+                     {std::max(kCraneFoot, 2 + size / 2), kCraneFoot, size}};
+    case Family::kStairs:
+      return CellBox{{0, 0, 0}, {size, kStairsWidth, size}};
     case Family::kGrowth:
     case Family::kBall:
     case Family::kPrismWall:
@@ -247,6 +303,14 @@ bool family_has(Family family, std::size_t wanted, const Cell& cell) {
              z >= size / 2 - kPortalThickness;
     case Family::kBridge:
       return z < kPierHeight ? x < kPierWidth : x < size;
+    case Family::kArch:
+      return is_in_arch(size, cell);
+    case Family::kCrane:
+      return z == 0
+                 ? x >= 0 && x < kCraneFoot
+                 : y == 1 && (x == 1 || (z == size - 1 && x >= 1 - size / 4 && x <= 1 + size / 2));
+    case Family::kStairs:
+      return z <= x;
     default:
       return true;
   }

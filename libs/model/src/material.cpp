@@ -31,7 +31,7 @@ std::optional<std::string> find_fault(const MaterialParameter& parameter, double
     return std::nullopt;
   }
   const bool is_upwards = parameter.value == &Material::gravity_m_s2 && value < 0;
-  return fmt::format("{} is {}, allowed is {} to {}{}", parameter.key, value, parameter.lowest,
+  return fmt::format("{} is {}, expected {} to {}{}", parameter.key, value, parameter.lowest,
                      parameter.highest,
                      is_upwards ? "; here it is a size, downwards; a vector such as [0, 0, -9.81] "
                                   "is a key of its own in version 2"

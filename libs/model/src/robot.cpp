@@ -38,7 +38,7 @@ std::optional<std::string> find_double_cell(const RobotSpec& spec, CellIndex& in
   std::int32_t next = 0;
   for (const Cell& cell : spec.existing) {
     if (index.insert(cell, next++) != CellIndex::kNone) {
-      return fmt::format("two modules in the cell {}, allowed is one", text(cell));
+      return fmt::format("two modules in the cell {}, expected one", text(cell));
     }
   }
   const auto existing_count = static_cast<std::int32_t>(spec.existing.size());
@@ -46,7 +46,7 @@ std::optional<std::string> find_double_cell(const RobotSpec& spec, CellIndex& in
     const std::int32_t earlier = index.insert(cell, next++);
     if (earlier != CellIndex::kNone) {
       return fmt::format(
-          "the planned cell {} is {}, allowed are free cells, each once", text(cell),
+          "the planned cell {} is {}, expected free cells, each once", text(cell),
           earlier < existing_count ? "occupied by an existing module" : "planned twice");
     }
   }
@@ -207,12 +207,12 @@ std::optional<std::string> Robot::release(std::span<const CellPair> pairs, const
     const std::int32_t b = index.find(pair[1]);
     if (!direction || a == CellIndex::kNone || b == CellIndex::kNone) {
       return fmt::format(
-          "the released pair {}-{} is no connection, allowed are two modules in neighbouring cells",
+          "the released pair {}-{} is no connection, expected two modules in neighbouring cells",
           text(pair[0]), text(pair[1]));
     }
     std::int32_t& there = connected_[base::at(a)][base::at(base::index(*direction))];
     if (there == kNoNeighbour) {
-      return fmt::format("the pair {}-{} is released twice, allowed is once", text(pair[0]),
+      return fmt::format("the pair {}-{} is released twice, expected once", text(pair[0]),
                          text(pair[1]));
     }
     there = kNoNeighbour;

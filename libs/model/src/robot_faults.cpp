@@ -25,11 +25,11 @@ std::optional<std::string> find_size_fault(const RobotSpec& spec) {
     return "the robot has no existing module, at least one is needed";
   }
   if (spec.existing.size() + spec.planned.size() > kModuleCountMax) {
-    return fmt::format("{} modules, allowed are at most {}",
+    return fmt::format("{} modules, expected at most {}",
                        spec.existing.size() + spec.planned.size(), kModuleCountMax);
   }
   if (spec.support_z && std::abs(std::int64_t{*spec.support_z}) > base::kCoordinateMax) {
-    return fmt::format("the support level is {}, allowed is -{} to {}", *spec.support_z,
+    return fmt::format("the support level is {}, expected -{} to {}", *spec.support_z,
                        base::kCoordinateMax, base::kCoordinateMax);
   }
   return std::nullopt;
@@ -40,7 +40,7 @@ std::optional<std::string> find_coordinate_fault(std::span<const Cell> cells) {
     for (const std::int64_t coordinate : {cell.x, cell.y, cell.z}) {
       if (std::abs(coordinate) > base::kCoordinateMax) {
         return fmt::format(
-            "the cell {} lies outside the lattice, allowed are coordinates from "
+            "the cell {} lies outside the lattice, expected coordinates from "
             "-{} to {}",
             text(cell), base::kCoordinateMax, base::kCoordinateMax);
       }
@@ -58,7 +58,7 @@ std::optional<std::string> find_sheet_fault(const RobotSpec& spec) {
     const auto stray = std::ranges::find_if(*cells, [&](const Cell& cell) { return cell.y != y; });
     if (stray != cells->end()) {
       return fmt::format(
-          "the cells {} and {} differ in y, allowed in a hexagonal lattice is one sheet of discs",
+          "the cells {} and {} differ in y, expected one sheet of discs in a hexagonal lattice",
           text(spec.existing.front()), text(*stray));
     }
   }
@@ -67,7 +67,7 @@ std::optional<std::string> find_sheet_fault(const RobotSpec& spec) {
 
 std::optional<std::string> find_friction_fault(const Touch& touch, std::string_view where) {
   if (touch.friction && !(*touch.friction >= 0 && *touch.friction <= kNumberMax)) {
-    return fmt::format("the friction of {} is {}, allowed is 0 to {}", where, *touch.friction,
+    return fmt::format("the friction of {} is {}, expected 0 to {}", where, *touch.friction,
                        kNumberMax);
   }
   return std::nullopt;
@@ -99,7 +99,7 @@ std::optional<std::string> find_gravity_fault(const RobotSpec& spec) {
   const double length = std::hypot(x, y, z);
   if (!is_small(length) || length < 1e-12) {
     return fmt::format(
-        "gravity is ({}, {}, {}) m/s^2, allowed is a vector that is 1e-12 to {} long: without "
+        "gravity is ({}, {}, {}) m/s^2, expected a vector that is 1e-12 to {} long: without "
         "weight there is nothing to hold",
         x, y, z, kNumberMax);
   }
@@ -118,8 +118,7 @@ std::optional<std::string> find_payload_fault(const Payload& payload) {
 
 std::optional<std::string> find_mass_fault(double mass_kg, std::string_view where) {
   if (!(mass_kg >= 1e-12 && mass_kg <= kNumberMax)) {
-    return fmt::format("the mass of {} is {} kg, allowed is 1e-12 to {}", where, mass_kg,
-                       kNumberMax);
+    return fmt::format("the mass of {} is {} kg, expected 1e-12 to {}", where, mass_kg, kNumberMax);
   }
   return std::nullopt;
 }
@@ -136,8 +135,8 @@ std::optional<std::string> find_law_fault(const ConnectorLaw& law, std::string_v
       {"friction", law.friction.value_or(1)}};
   for (const auto& [name, value] : numbers) {
     if (!is_positive(value)) {
-      return fmt::format("the {} of a connector of kind '{}' is {}, allowed is 1e-12 and more",
-                         name, kind, value);
+      return fmt::format("the {} of a connector of kind '{}' is {}, expected 1e-12 or more", name,
+                         kind, value);
     }
   }
   return std::nullopt;
@@ -181,7 +180,7 @@ std::optional<std::string> find_general_fault(const RobotSpec& spec) {
                             "what " + text(spec.carried[i].carrier) + " carries");
   }
   if (!fault && spec.foot_mm && !(*spec.foot_mm >= 0 && *spec.foot_mm <= kNumberMax)) {
-    fault = fmt::format("foot_mm is {}, allowed is 0 to {}", *spec.foot_mm, kNumberMax);
+    fault = fmt::format("foot_mm is {}, expected 0 to {}", *spec.foot_mm, kNumberMax);
   }
   return fault;
 }
@@ -250,10 +249,9 @@ std::optional<std::string> find_connection_fault(const Connections& connections,
     }
   }
   if (loose_count > 0) {
-    return fmt::format(
-        "the robot is not connected: {} of {} modules, {}{} no chain of faces with {}", loose_count,
-        existing_count, text(modules[loose].cell),
-        loose_count == 1 ? ", shares" : " among them, share", text(modules[0].cell));
+    return fmt::format("the robot is not connected: {} of {} modules, {}{} not connected to {}",
+                       loose_count, existing_count, text(modules[loose].cell),
+                       loose_count == 1 ? ", is" : " among them, are", text(modules[0].cell));
   }
   for (const Connection& pair : connections) {
     if (pair.a >= first_planned || pair.b >= first_planned) {
@@ -288,8 +286,8 @@ std::optional<std::string> find_module_below_floor(const Robot& robot) {
     return module.cell.z == *level && module.support != Support::kFixed;
   });
   return fmt::format(
-      "the module {} is below the ground, on which {} rests at the support level z = {}; allowed "
-      "below that level are modules only where none rests on it: lower the support level, or fix "
+      "the module {} is below the ground, on which {} rests at the support level z = {}; modules "
+      "below that level are allowed only where none rests on it: lower the support level, or fix "
       "what is on it",
       text(below->cell), text(standing->cell), *level);
 }

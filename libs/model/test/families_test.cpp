@@ -52,6 +52,48 @@ TEST(Families, growth_draws_as_python_does) {
   EXPECT_EQ(cells[4999], (Cell{11, 4, 5}));
 }
 
+TEST(Families, to_begin_with_are_robots_of_every_size) {
+  for (const Family family : {Family::kArch, Family::kCrane, Family::kStairs, Family::kWall}) {
+    for (std::size_t size = family == Family::kArch ? 4 : 3; size < 70; ++size) {
+      const std::vector<Cell> cells = family_cells(family, size);
+      EXPECT_EQ(cells.size(), family_count(family, size)) << size;
+      const auto robot = Robot::create({.existing = cells});
+      EXPECT_TRUE(robot) << size << ' ' << (robot ? "" : robot.error().message);
+    }
+  }
+}
+
+TEST(Families, arch_stands_on_two_feet_and_is_as_wide_as_it_says) {
+  for (const std::int32_t size : {8, 13, 40}) {
+    const std::vector<Cell> cells = family_cells(Family::kArch, static_cast<std::size_t>(size));
+    std::set<std::int32_t> feet;
+    for (const Cell& cell : cells) {
+      if (cell.z == 0) {
+        feet.insert(cell.x);
+      }
+    }
+    EXPECT_EQ(feet, (std::set<std::int32_t>{0, 1, size - 2, size - 1}));
+    const auto is_mirrored = [&](const Cell& cell) {
+      return std::ranges::find(cells, Cell{size - 1 - cell.x, cell.y, cell.z}) != cells.end();
+    };
+    EXPECT_TRUE(std::ranges::all_of(cells, is_mirrored)) << size;
+  }
+}
+
+TEST(Families, crane_of_four_is_what_one_draws) {
+  // From the side, y = 1: a jib of two to +x, a counter-jib of one, a mast on a foot.
+  const std::vector<Cell> cells = family_cells(Family::kCrane, 4);
+  std::vector<Cell> expected;
+  for (std::int32_t y = 0; y < 3; ++y) {
+    for (std::int32_t x = 0; x < 3; ++x) {
+      expected.push_back({x, y, 0});
+    }
+  }
+  expected.insert(expected.end(),
+                  {{1, 1, 1}, {1, 1, 2}, {0, 1, 3}, {1, 1, 3}, {2, 1, 3}, {3, 1, 3}});
+  EXPECT_EQ(cells, expected);
+}
+
 TEST(Families, are_found_by_name) {
   EXPECT_EQ(find_family("portal"), Family::kPortal);
   EXPECT_EQ(find_family("castle"), std::nullopt);

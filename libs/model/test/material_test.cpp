@@ -53,7 +53,7 @@ void expect_fault(const Parameter& parameter, double value, const std::string& v
   ASSERT_TRUE(fault) << parameter.name << " = " << value_text;
   EXPECT_TRUE(contains(*fault, parameter.name)) << *fault;
   EXPECT_TRUE(contains(*fault, " is " + value_text + ",")) << *fault;
-  EXPECT_TRUE(contains(*fault, "allowed is " + std::string(parameter.lowest) + " to ")) << *fault;
+  EXPECT_TRUE(contains(*fault, "expected " + std::string(parameter.lowest) + " to ")) << *fault;
 }
 
 TEST(Material, is_that_of_table_1) {

@@ -172,13 +172,13 @@ TEST(MovePlan, to_where_nothing_safe_leads_is_proved_from_the_target) {
 TEST(MovePlan, refuses_what_is_no_pair_of_shapes_of_one_robot) {
   const std::vector<Cell> row = {{0, 0, 0}, {1, 0, 0}};
   EXPECT_EQ(fault_of(task_of(row, {{0, 0, 0}})),
-            "the robot has 2 modules and its target 1; allowed are shapes of the same modules");
+            "the robot has 2 modules and its target 1; expected shapes of the same modules");
   EXPECT_EQ(fault_of(task_of({{0, 0, 0}}, row)),
-            "the robot has 1 module and its target 2; allowed are shapes of the same modules");
+            "the robot has 1 module and its target 2; expected shapes of the same modules");
   MoveTask task = task_of(row, row);
   task.target.material.mass_kg = 1;
   EXPECT_EQ(fault_of(task),
-            "both robots differ in material; allowed are two shapes of one robot where it stands");
+            "both robots differ in material; expected two shapes of one robot where it stands");
   task = task_of(row, row);
   task.start.fixed = {{0, 0, 0}};
   EXPECT_EQ(fault_of(task),

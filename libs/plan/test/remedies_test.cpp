@@ -127,8 +127,14 @@ TEST(Remedies, of_robots_of_every_lattice_are_what_checks_of_the_changed_robots_
       compare(spec, what, counts);
     }
   };
-  for (std::uint64_t seed = 0; seed < test::campaign(60U, 6U); ++seed) {
-    add(test::random_robot(seed), "random_robot " + std::to_string(seed) + ": ");
+  for (std::uint64_t seed = 0; seed < test::campaign(30U, 6U); ++seed) {
+    const RobotSpec spec = test::random_robot(seed);
+    const Judgement judged = *checked(spec);
+    add(spec, "random_robot " + std::to_string(seed) + ": ");
+    if (judged.is_safe() && judged.load_ratio_max > 0.01) {
+      add(test::with_strengths_times(spec, *judged.load_ratio_max / 1.15),
+          "weak random_robot " + std::to_string(seed) + ": ");
+    }
   }
   for (const base::Lattice& lattice : test::kLattices) {
     for (std::uint64_t seed = 0; seed < test::campaign(6U, 6U); ++seed) {

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "holdfast/agent/link.hpp"
+#include "holdfast/agent/wire/link.hpp"
 
 /// A module's own clock, in integers: local = global +- floor(global rate / 2^32).
 namespace holdfast::sim {

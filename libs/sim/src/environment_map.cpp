@@ -8,7 +8,7 @@
 #include <numeric>
 #include <utility>
 
-#include "holdfast/agent/feet.hpp"
+#include "holdfast/agent/cells/feet.hpp"
 #include "holdfast/model/facet_starts.hpp"
 
 namespace holdfast::sim {

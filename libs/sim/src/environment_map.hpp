@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "front_store.hpp"
-#include "holdfast/agent/deflation.hpp"
-#include "holdfast/agent/free_faces.hpp"
-#include "holdfast/agent/workspace.hpp"
+#include "holdfast/agent/equilibrium/deflation.hpp"
+#include "holdfast/agent/equilibrium/workspace.hpp"
+#include "holdfast/agent/free_faces/free_faces.hpp"
 #include "holdfast/mechanics/lattice_beam.hpp"
 #include "holdfast/model/robot.hpp"
 

@@ -7,8 +7,8 @@
 #include <memory>
 #include <vector>
 
-#include "holdfast/agent/front_contact.hpp"
-#include "holdfast/agent/link.hpp"
+#include "holdfast/agent/methods/front_contact.hpp"
+#include "holdfast/agent/wire/link.hpp"
 #include "holdfast/base/cell.hpp"
 
 namespace holdfast::sim {

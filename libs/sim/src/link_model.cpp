@@ -68,11 +68,11 @@ std::optional<LinkModel> find_link_model(std::string_view name) {
 std::optional<std::string> find_link_fault(const LinkModel& model) {
   if (model.packet_bytes < agent::wire::kPacketBytesMin ||
       model.packet_bytes > agent::wire::kPacketBytesMax) {
-    return fmt::format("packet_bytes is {}, allowed are {} to {}", model.packet_bytes,
+    return fmt::format("packet_bytes is {}, expected {} to {}", model.packet_bytes,
                        agent::wire::kPacketBytesMin, agent::wire::kPacketBytesMax);
   }
   if (model.overhead_bytes < 0 || model.bits_per_byte < 1) {
-    return fmt::format("overhead_bytes is {}, bits_per_byte {}; allowed are 0 and 1 or more",
+    return fmt::format("overhead_bytes is {}, bits_per_byte {}; expected 0 and 1 or more",
                        model.overhead_bytes, model.bits_per_byte);
   }
   if (model.packet_time == 0 && (model.bit_rate == 0 || model.ticks_per_second == 0)) {
@@ -88,14 +88,14 @@ std::optional<std::string> find_link_fault(const LinkModel& model) {
        {Named{"loss", model.loss}, Named{"duplication", model.duplication},
         Named{"reordering", model.reordering}, Named{"corruption", model.corruption}}) {
     if (!(chance.value >= 0 && chance.value <= 1)) {
-      return fmt::format("{} is {}, allowed are 0 to 1", chance.name, chance.value);
+      return fmt::format("{} is {}, expected 0 to 1", chance.name, chance.value);
     }
   }
   if (model.reordering > 0 && model.reordering_delay == 0) {
     return "reordering_delay is 0, but reordering is not";
   }
   if (!(model.clock_drift >= 0 && model.clock_drift <= 0.1)) {
-    return fmt::format("clock_drift is {}, allowed are 0 to 0.1", model.clock_drift);
+    return fmt::format("clock_drift is {}, expected 0 to 0.1", model.clock_drift);
   }
   return std::nullopt;
 }

@@ -8,7 +8,7 @@
 
 #include "engine.hpp"
 #include "environment_map.hpp"
-#include "holdfast/agent/feet.hpp"
+#include "holdfast/agent/cells/feet.hpp"
 #include "holdfast/base/check.hpp"
 
 namespace holdfast::sim {
@@ -19,7 +19,7 @@ std::optional<std::string> find_module_fault(const char* what, std::int32_t modu
   if (module >= 0 && static_cast<std::size_t>(module) < count) {
     return std::nullopt;
   }
-  return fmt::format("{} is {}, allowed are existing modules: 0 to {}", what, module, count - 1);
+  return fmt::format("{} is {}, expected existing modules: 0 to {}", what, module, count - 1);
 }
 
 /// Whether some support has a coefficient of friction.
@@ -44,7 +44,7 @@ std::optional<std::string> find_robot_fault(const model::Robot& robot) {
     return std::nullopt;
   }
   return fmt::format(
-      "the robot has {} pairs of neighbours that are not connected, allowed are none: the modules' "
+      "the robot has {} pairs of neighbours that are not connected, expected none: the modules' "
       "program connects all neighbours",
       robot.released_count());
 }
@@ -83,7 +83,7 @@ std::optional<std::string> find_place_fault(const model::Robot& robot,
     return std::nullopt;
   }
   return fmt::format(
-      "a module is planned at {}, allowed are cells of the robot's modules, as it has more than a "
+      "a module is planned at {}, expected cells of the robot's modules, as it has more than a "
       "floor",
       model::text(announcement.cell));
 }
@@ -101,7 +101,7 @@ std::optional<std::string> find_options_fault(const model::Robot& robot,
     found = find_unknown_fault(*options.step_end);
   }
   if (!found && !options.step.empty() && options.judges_faces) {
-    found = "the options ask for stages of a step and for free faces, allowed is one of them";
+    found = "the options ask for stages of a step and for free faces, expected one of them";
   }
   found = found ? found : find_link_fault(options.link);
   found = found ? found : find_module_fault("anchor", options.anchor, count);
@@ -114,7 +114,7 @@ std::optional<std::string> find_options_fault(const model::Robot& robot,
     found = find_module_fault("module that is told its cell", options.told_cells[i].module, count);
   }
   if (!found && options.step.size() > agent::kWordCountMax) {
-    found = fmt::format("the step has {} words, allowed are {}: modules keep no more",
+    found = fmt::format("the step has {} words, expected at most {}: modules keep no more",
                         options.step.size(), agent::kWordCountMax);
   }
   for (std::size_t i = 0; !found && i < options.announcements.size(); ++i) {

@@ -51,7 +51,7 @@ TEST(LinkModel, refuses_what_cannot_be) {
   }
   LinkModel model = unit();
   model.loss = 1.5;
-  EXPECT_EQ(*find_link_fault(model), "loss is 1.5, allowed are 0 to 1");
+  EXPECT_EQ(*find_link_fault(model), "loss is 1.5, expected 0 to 1");
   model = unit();
   model.packet_bytes = 16;
   EXPECT_TRUE(find_link_fault(model));

@@ -182,7 +182,7 @@ TEST(SimulationOptions, are_checked) {
   const model::Robot robot = make_robot(arm(2));
   EXPECT_FALSE(find_options_fault(robot, {}));
   EXPECT_EQ(*find_options_fault(robot, {.anchor = 3}),
-            "anchor is 3, allowed are existing modules: 0 to 2");
+            "anchor is 3, expected existing modules: 0 to 2");
   EXPECT_TRUE(find_options_fault(robot, {.plan_module = -1}));
   EXPECT_TRUE(find_options_fault(robot, {.announcements = {{.at = 0, .module = 4, .cell = {}}}}));
   // Module 1 has no neighbour in +x, and the one above it is only planned.

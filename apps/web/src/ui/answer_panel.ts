@@ -131,7 +131,7 @@ function stabilityFigures(robot: EditedRobot, { stability }: Answer): Figure[] {
     list.push(['Tilt to spare', `${numberText(rigid.tilt_margin_deg)}°`, 'by which gravity may turn, in any direction']);
   }
   if (rigid.friction_needed !== null && rule === 'contact-forces') {
-    list.push(['Friction needed', numberText(rigid.friction_needed, 3), 'of a rigid body, at the best pressing; the elastic forces may take more']);
+    list.push(['Friction needed', numberText(rigid.friction_needed, 3), 'of a rigid body, at the most favourable contact forces; the elastic forces may take more']);
   }
   return list;
 }

@@ -36,7 +36,7 @@ const short = (value: number) => (Math.abs(value) < 1e6 ? String(value) : value.
 /** Why a number is refused, if it is. */
 export function outside(value: number, unit: string, { lowest, highest }: Range = ANY): string | undefined {
   const isFine = value >= lowest && value <= highest;
-  return isFine ? undefined : `${short(value)} is not possible: allowed is ${short(lowest)} to ${short(highest)}${unit && ` ${unit}`}.`;
+  return isFine ? undefined : `${short(value)} is not possible: expected ${short(lowest)} to ${short(highest)}${unit && ` ${unit}`}.`;
 }
 
 function faultOf(text: string, { lowest, highest, isWhole, unit }: Partial<NumberField>): string | undefined {

@@ -101,7 +101,7 @@ std::size_t count_pieces(const model::Robot& robot) {
 std::optional<std::string> find_fault(const model::Robot& robot) {
   const std::size_t pieces = count_pieces(robot);
   if (pieces > 1) {
-    return "the robot is in " + std::to_string(pieces) + " pieces, allowed is one";
+    return "the robot is in " + std::to_string(pieces) + " pieces, expected one";
   }
   if (host::all(robot.ranks(), robot.facets().empty() && robot.fixed_count() == 0)) {
     return "nothing holds the robot: no module is fixed, and none touches the ground or an "

@@ -2,15 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/conductor/face_judging.hpp"
 
-#include "holdfast/agent/occupied_cells.hpp"
-#include "methods.hpp"
-#include "orders.hpp"
-#include "tolerances.hpp"
+#include "algebra/tolerances.hpp"
+#include "conductor/orders.hpp"
+#include "holdfast/agent/cells/occupied_cells.hpp"
+#include "holdfast/agent/features.hpp"
 
 namespace holdfast::agent {
 
 bool FaceJudging::is_due(const Whole& whole, Verdict verdict) const {
-  return kJudgesFaces && judges_ && !has_judged_ && whole.planned_count == 0 &&
+  return kKeepsAnswers && judges_ && !has_judged_ && whole.planned_count == 0 &&
          verdict != Verdict::kUndecided;
 }
 

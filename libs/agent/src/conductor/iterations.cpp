@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/conductor/iterations.hpp"
 
-#include "methods.hpp"
-#include "orders.hpp"
-#include "scalar.hpp"
-#include "tolerances.hpp"
+#include "algebra/scalar.hpp"
+#include "algebra/tolerances.hpp"
+#include "conductor/orders.hpp"
+#include "holdfast/agent/features.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -30,8 +30,8 @@ constexpr double kLongCorrection = 0.3;
 /// Clusters are tried from this depth on. Below, a polynomial of 1.5 times the depth is as good.
 constexpr int kClusterDepthMin = 64;
 
-/// They are left alone if more than one of so many beams between them is stray. In long robots it
-/// is one in three at most, in solids, shells and scaffolds more than half of them.
+/// Clusters are left alone if more than one of so many beams between them is stray. In long robots
+/// it is one in three at most, in solids, shells and scaffolds more than half of them.
 constexpr std::uint32_t kStrayShare = 2;
 
 /// Degree of each of the two polynomials. They have to smooth what clusters 8 modules long do
@@ -44,11 +44,9 @@ constexpr std::uint16_t kClusterDegreeShare = 5;
 /// fz^2 / (E A/L) + m^2 / (E I/L) and more, all of it part of e K e, so by Cauchy and Schwarz
 /// (2 m/a + fz)^2 <= (E A/L + 4 E I / (L a^2)) e K e. With that the bound holds for any robot.
 double ratio_per_energy_root(const Setup& setup) {
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
   if (setup.ratio_per_energy_root > 0) {
     return setup.ratio_per_energy_root;
   }
-#endif
   const double bend = setup.beam.bend_x > setup.beam.bend_y ? setup.beam.bend_x : setup.beam.bend_y;
   const double strength = setup.strength_vertical_n < setup.strength_lateral_n
                               ? setup.strength_vertical_n
@@ -74,12 +72,8 @@ bool is_last(const Whole& whole, double predicted, double target) {
 
 }  // namespace
 
-bool needs_forces([[maybe_unused]] const Setup& setup, [[maybe_unused]] const Whole& whole) {
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-  return false;
-#else
+bool needs_forces(const Setup& setup, const Whole& whole) {
   return whole.is_uneven() || setup.has_friction;
-#endif
 }
 
 // ---- Accuracy.
@@ -96,14 +90,10 @@ void Accuracy::restart() {
   stagnation_count = 0;
 }
 
-double Accuracy::uneven_target([[maybe_unused]] const Whole& whole) const {
+double Accuracy::uneven_target(const Whole& whole) const {
   const double size = kHasAllMethods && !(ratio > kNoLoadRatio) ? 0 : absolute(ratio);
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-  return kUnevenTolerance * (1 + size);
-#else
-  const double share = whole.is_exact() ? kEliminatedShare : 1;
+  const double share = kIsGeneral && whole.is_exact() ? kEliminatedShare : 1;
   return share * kUnevenTolerance * (1 + size) * static_cast<double>(1U << slack_bits);
-#endif
 }
 
 double Accuracy::halting_target(const Whole& whole) const {
@@ -146,12 +136,10 @@ void ClusterChoice::choose(const Whole& whole, const Report& report) {
 
 // ---- Iterations.
 
-void Iterations::enter([[maybe_unused]] const Setup& setup, Deflation* deflation) {
+void Iterations::enter(const Setup& setup, Deflation* deflation) {
   clusters.has_left = setup.only_one_sweep || !setup.is_cubic();
   deflation_ = deflation;
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
   accuracy.slack_bits = setup.slack_bits;
-#endif
 }
 
 void Iterations::begin(const Whole& whole, bool keeps_motion) {
@@ -259,7 +247,7 @@ Iterations::Outcome Iterations::judge(const Setup& setup, const Whole& whole, co
   }
   const bool is_idle = accuracy.stagnation_count > kClusterStagnationMax ||
                        whole.effort.iterations > kClusterIterationsMax;
-  const bool had_clusters = kHasAllMethods && clusters.had && !is_exact;
+  const bool had_clusters = clusters.had && !is_exact;
   return had_clusters && is_idle ? Outcome::kClustersStuck : Outcome::kGoesOn;
 }
 
@@ -283,7 +271,7 @@ Order Iterations::jumped(const Whole& whole, const Law& law, const Report& repor
     return factor();
   }
   const bool is_long = report.products[0] < -kLongCorrection * report.products[1];
-  if (!(kHasAllMethods && clusters.had) || has_changed_ || !is_long) {
+  if (!clusters.had || has_changed_ || !is_long) {
     return restarted(whole, law);
   }
   energy_bound_.restart();
@@ -294,13 +282,12 @@ Order Iterations::jumped(const Whole& whole, const Law& law, const Report& repor
 }
 
 bool Iterations::is_beyond_clusters(const Whole& whole) const {
-  return kHasAllMethods && clusters.had && !whole.is_exact() &&
-         whole.effort.iterations > kClusterIterationsMax;
+  return clusters.had && !whole.is_exact() && whole.effort.iterations > kClusterIterationsMax;
 }
 
 Order Iterations::make(const Whole& whole, std::uint8_t flags,
                        const std::array<float, 3>& coefficients) {
-  const bool has_clusters = kHasAllMethods && clusters.has;
+  const bool has_clusters = clusters.has;
   const bool takes_clusters = has_clusters && !least_residual_;
   Order iteration = order_of(operation(whole));
   kept_states_ =
@@ -314,8 +301,8 @@ Order Iterations::make(const Whole& whole, std::uint8_t flags,
   iteration.count = takes_clusters ? cluster_degree(whole) : degree(whole);
   iteration.reals = coefficients;
   set_along(whole, iteration);
-  has_changed_ = takes_clusters != (kHasAllMethods && clusters.had) ||
-                 holds_planned_ != held_planned_ || newton.stands_in != newton.stood_in;
+  has_changed_ = takes_clusters != clusters.had || holds_planned_ != held_planned_ ||
+                 newton.stands_in != newton.stood_in;
   clusters.had = takes_clusters;
   held_planned_ = holds_planned_;
   newton.stood_in = newton.stands_in;
@@ -328,8 +315,7 @@ Order Iterations::make(const Whole& whole, std::uint8_t flags,
 /// as if.
 Order Iterations::restarted(const Whole& whole, const Law& law, std::uint8_t flags) {
   has_older_ = false;
-  least_residual_ = law.is_tilting() && !(kHasAllMethods && clusters.has) && !whole.is_any_remote &&
-                    !newton.is_used;
+  least_residual_ = law.is_tilting() && !clusters.has && !whole.is_any_remote && !newton.is_used;
   energy_bound_.restart();
   return make(whole, static_cast<std::uint8_t>(kRestart | flags), {});
 }
@@ -396,10 +382,8 @@ bool Iterations::deflates(const Whole& whole) const {
   return kKeepsAnswers && whole.is_resumed && deflation_ != nullptr && deflation_->is_used();
 }
 
-void Iterations::begin_deflation([[maybe_unused]] const Report& report) {
-#ifndef HOLDFAST_AGENT_STARTS_AFRESH
+void Iterations::begin_deflation(const Report& report) {
   deflation_->begin(report.along, report.energies);
-#endif
 }
 
 std::uint8_t Iterations::place_of_change() {
@@ -410,35 +394,31 @@ void Iterations::end_deflation(const Whole& whole) {
   if (!kKeepsAnswers || deflation_ == nullptr) {
     return;
   }
-  if (whole.effort.method != Method::kPolynomial || newton.is_used ||
-      (kHasAllMethods && clusters.has)) {
+  if (whole.effort.method != Method::kPolynomial || newton.is_used || clusters.has) {
     return deflation_->forget();
   }
   deflation_->end(is_spoiled_ ? 0 : whole.effort.iterations, whole.is_resumed);
 }
 
 Operation Iterations::operation(const Whole& whole) const {
-  const bool is_plain = (kHasAllMethods && clusters.has) || newton.is_used || whole.is_exact();
+  const bool is_plain = clusters.has || newton.is_used || whole.is_exact();
   return is_plain                                      ? Operation::kIterate
          : is_last(whole, predicted_, accuracy.target) ? Operation::kIterateLast
          : deflates(whole)                             ? Operation::kIterateDeflated
                                                        : Operation::kIterate;
 }
 
-Report Iterations::completed([[maybe_unused]] const Whole& whole, const Report& report) {
+Report Iterations::completed(const Whole& whole, const Report& report) {
   Report completed = report;
-#ifndef HOLDFAST_AGENT_STARTS_AFRESH
   if (deflates(whole)) {
     deflation_->complete(report.along, completed.products);
   }
-#endif
   return completed;
 }
 
 /// How far an iteration goes along what is kept: not at all once the stiffness has changed, as E
 /// has not, and while the residual's norm is what is least.
-void Iterations::set_along([[maybe_unused]] const Whole& whole, [[maybe_unused]] Order& iteration) {
-#ifndef HOLDFAST_AGENT_STARTS_AFRESH
+void Iterations::set_along(const Whole& whole, Order& iteration) {
   if (!is_deflated(iteration.operation) || !deflates(whole)) {
     return;
   }
@@ -450,7 +430,6 @@ void Iterations::set_along([[maybe_unused]] const Whole& whole, [[maybe_unused]]
                         ? deflation_->restart()
                         : deflation_->minimise(static_cast<double>(c), static_cast<double>(a),
                                                static_cast<double>(b));
-#endif
 }
 
 }  // namespace holdfast::agent

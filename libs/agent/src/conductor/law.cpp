@@ -2,16 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/conductor/law.hpp"
 
+#include "algebra/scalar.hpp"
+#include "algebra/tolerances.hpp"
+#include "conductor/orders.hpp"
+#include "holdfast/agent/features.hpp"
 #include "holdfast/mechanics/connector.hpp"
-#include "methods.hpp"
-#include "orders.hpp"
-#include "scalar.hpp"
-#include "tolerances.hpp"
 
 namespace holdfast::agent {
 
 void Law::begin(bool is_unilateral, std::uint32_t changes) {
-  if (kHasSurroundings && !is_unilateral) {
+  if (kIsGeneral && !is_unilateral) {
     has_given_up_ = false;
     is_second_ = false;
     springs_ = WeakSprings::kWeakest;
@@ -22,7 +22,7 @@ void Law::begin(bool is_unilateral, std::uint32_t changes) {
 }
 
 double Law::gamma() const {
-  switch (kHasSurroundings ? springs_ : WeakSprings::kWeakest) {
+  switch (kIsGeneral ? springs_ : WeakSprings::kWeakest) {
     case WeakSprings::kStiffer:
       return kStifferGamma;
     case WeakSprings::kToppling:
@@ -47,7 +47,7 @@ void Law::note(const Report& report) {
   is_tilting_ = (report.flags & kAnyTilting) != 0;
   may_pull_ = (report.flags & kMayPull) != 0;
   may_differ_ = (report.flags & kMayDiffer) != 0;
-  if constexpr (kSeeksOthers) {
+  if constexpr (kHasAllMethods) {
     states_hash_ = report.states_hash();
   }
 }
@@ -101,7 +101,7 @@ Answer Law::verdict(const Whole& whole, double first, double ratio, double error
   if (absolute(ratio - 1) <= doubt) {
     return undecided_by(Reason::kTooClose);
   }
-  const bool falls = kHasSurroundings && (other_fails || (is_second_ && !is_standing_));
+  const bool falls = kIsGeneral && (other_fails || (is_second_ && !is_standing_));
   if (mechanics::breaks(ratio) != breaks || (falls && !breaks)) {
     return undecided_by(Reason::kAmbiguousFeet);
   }

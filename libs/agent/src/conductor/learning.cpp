@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/conductor/learning.hpp"
 
-#include "holdfast/agent/feet.hpp"
-#include "holdfast/agent/stages.hpp"
-#include "methods.hpp"
-#include "orders.hpp"
+#include "conductor/orders.hpp"
+#include "holdfast/agent/cells/feet.hpp"
+#include "holdfast/agent/features.hpp"
+#include "holdfast/agent/world/stages.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -15,12 +15,11 @@ using wire::Operation;
 /// Plans that end in one round, at most; more end as `undecided`.
 constexpr std::uint8_t kForgottenMax = 200;
 
-/// Of many planned modules the masks go down in parts. `planned` has those of the later ones.
-Order ask_hosts(const Whole& whole, [[maybe_unused]] const Planned& planned) {
+/// The masks of many planned modules go down in parts. `planned` has those of the later ones.
+Order ask_hosts(const Whole& whole, const Planned& planned) {
   Order hosts = order_of(Operation::kHosts);
   hosts.masks = whole.totals;
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
-  if (whole.planned_count > kMasksOfPart) {
+  if (kIsGeneral && whole.planned_count > kMasksOfPart) {
     const int first = planned.parts_here() * kMasksOfPart;
     hosts.index = static_cast<std::uint8_t>(planned.parts_here());
     for (std::size_t i = 0; i < hosts.masks.size(); ++i) {
@@ -28,36 +27,26 @@ Order ask_hosts(const Whole& whole, [[maybe_unused]] const Planned& planned) {
       hosts.masks[i] = k < planned.count() ? planned.touching(k).mask() : FaceMask{0};
     }
   }
-#endif
   return hosts;
 }
 
 /// Does somebody emulate every planned module? Reports have room for few; of many the root knows
 /// it.
-bool is_all_hosted(const Whole& whole, const Report& report,
-                   [[maybe_unused]] const Planned& planned) {
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
-  if (whole.planned_count > kPlannedMax) {
+bool is_all_hosted(const Whole& whole, const Report& report, const Planned& planned) {
+  if (kIsGeneral && whole.planned_count > kPlannedMax) {
     return !planned.is_any_detached();
   }
-#endif
   return is_each_hosted(whole, report);
 }
 
 /// Do loads pull a robot away from the plane of all its supports? But for rounding to units.
 bool is_pulled_away(const Setup& setup, const Report& report) {
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-  static_cast<void>(setup);
-  static_cast<void>(report);
-  return false;
-#else
   const auto pressure = static_cast<std::int32_t>(report.mass());
   return setup.has_plane && (report.flags & kSumOverflow) == 0 &&
          pressure < -static_cast<std::int64_t>(report.count);
-#endif
 }
 
-/// In a plane of supports; what does not fit there is left to the equilibrium.
+/// Does the check in a plane of supports fit? What does not fit there is left to the equilibrium.
 bool fits_plane_check(const Setup& setup, const Report& report, std::uint16_t extent) {
   constexpr std::int64_t kMost = 0x7fffffff;
   const auto fits = [](std::int64_t moment) { return -kMost <= moment && moment <= kMost; };
@@ -90,7 +79,7 @@ Order Learning::after_plan(Whole& whole, const Report& report, const Planned& pl
   if (whole.planned_count > planned.capacity()) {
     return undecided(Reason::kPlannedTooMany);
   }
-  if (whole.planned_count > 0 && (!kPlansMany || whole.planned_count <= kMasksOfPart)) {
+  if (whole.planned_count > 0 && (!kIsGeneral || whole.planned_count <= kMasksOfPart)) {
     whole.totals[whole.planned_count - 1U] = report.mask;
   }
   if ((report.flags & kFound) != 0) {
@@ -104,7 +93,7 @@ Order Learning::after_plan(Whole& whole, const Report& report, const Planned& pl
     return undecided((report.flags & kDisputed) != 0 ? Reason::kPlanDisputed
                                                      : Reason::kPlannedTooMany);
   }
-  return kJudgesStages && (report.flags & kStepTold) != 0 ? first_word()
+  return kKeepsAnswers && (report.flags & kStepTold) != 0 ? first_word()
                                                           : ask_hosts(whole, planned);
 }
 
@@ -121,11 +110,9 @@ Order Learning::forget(Whole& whole, const Report& report) {
 }
 
 Order Learning::after_hosts(Whole& whole, const Report& report, const Planned& planned) {
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
   if (!planned.has_all_parts()) {
     return ask_hosts(whole, planned);
   }
-#endif
   whole.is_any_remote = (report.mask & kAnyRemote) != 0;
   if (!is_all_hosted(whole, report, planned)) {
     return undecided(Reason::kPlannedDetached);

@@ -3,12 +3,12 @@
 #pragma once
 
 #include "holdfast/agent/conductor/whole.hpp"
-#include "holdfast/agent/order.hpp"
+#include "holdfast/agent/messages/order.hpp"
 
 /// Orders that several of the conductor's strategies make.
 namespace holdfast::agent {
 
-/// Without fields, or with those still to come.
+/// An order without fields, or with those still to come.
 inline Order order_of(wire::Operation operation) { return {.operation = operation}; }
 
 /// The robot is judged.

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/conductor/renewal.hpp"
 
-#include "holdfast/agent/feet.hpp"
-#include "orders.hpp"
-#include "resume_masks.hpp"
-#include "scalar.hpp"
+#include "algebra/scalar.hpp"
+#include "conductor/orders.hpp"
+#include "holdfast/agent/cells/feet.hpp"
+#include "messages/resume_masks.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -37,7 +37,7 @@ struct Place {
 };
 
 Place place_of(const Setup& setup, const Environment* environment, const base::Cell& cell) {
-  if (!kHasSurroundings || environment == nullptr) {
+  if (!kIsGeneral || environment == nullptr) {
     return {.is_ground = cell.z == setup.support_z};
   }
   Surroundings there;

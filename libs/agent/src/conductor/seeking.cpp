@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/conductor/seeking.hpp"
 
+#include "conductor/orders.hpp"
+#include "holdfast/agent/features.hpp"
 #include "holdfast/mechanics/connector.hpp"
-#include "methods.hpp"
-#include "orders.hpp"
 
 namespace holdfast::agent {
 namespace {
@@ -18,7 +18,7 @@ constexpr int kTrialsMax = 250;
 /// The largest robot of which all states of few facets are tried.
 constexpr std::uint32_t kFewModules = 12;
 
-/// On a level floor a largest load ratio below this is not doubted: of 80 further solutions of
+/// A largest load ratio below this is not doubted on a level floor: of 80 further solutions of
 /// 7,400 random robots none has more than 1.2 times another's. Elsewhere any is, as one may have
 /// 13 times another's.
 constexpr double kDoubtedFrom = 0.75;
@@ -26,7 +26,7 @@ constexpr double kDoubtedFrom = 0.75;
 }  // namespace
 
 void Seeking::reset() {
-  if constexpr (kSeeksOthers) {
+  if constexpr (kHasAllMethods) {
     stage_ = Stage::kNotYet;
     other_fails_ = false;
     is_by_one_foot_ = false;
@@ -41,12 +41,12 @@ void Seeking::end(bool other_fails) {
 }
 
 bool Seeking::is_active() const {
-  return kSeeksOthers && (stage_ == Stage::kTrying || stage_ == Stage::kReturning);
+  return kHasAllMethods && (stage_ == Stage::kTrying || stage_ == Stage::kReturning);
 }
 
-bool Seeking::is_by_one_foot() const { return kSeeksOthers && is_by_one_foot_; }
+bool Seeking::is_by_one_foot() const { return kHasAllMethods && is_by_one_foot_; }
 
-bool Seeking::tries_each_state() const { return kSeeksOthers && tries_each_state_; }
+bool Seeking::tries_each_state() const { return kHasAllMethods && tries_each_state_; }
 
 bool Seeking::is_doubted(const Whole& whole, const Law& law, double ratio) const {
   return law.may_differ() && !whole.effort.is_unilateral && stage_ == Stage::kNotYet &&
@@ -55,17 +55,17 @@ bool Seeking::is_doubted(const Whole& whole, const Law& law, double ratio) const
 }
 
 bool Seeking::may_begin(const Whole& whole, const Law& law, const Iterations& iterations) const {
-  return kSeeksOthers && is_doubted(whole, law, iterations.accuracy.ratio) &&
+  return kHasAllMethods && is_doubted(whole, law, iterations.accuracy.ratio) &&
          !iterations.clusters.may_begin(whole);
 }
 
 bool Seeking::may_hang_by_foot(const Whole& whole) const {
-  return kSeeksOthers && whole.may_fall() && !whole.effort.is_unilateral &&
+  return kHasAllMethods && whole.may_fall() && !whole.effort.is_unilateral &&
          stage_ == Stage::kNotYet;
 }
 
 bool Seeking::is_back(const Law& law) const {
-  return kSeeksOthers && stage_ == Stage::kTrying &&
+  return kHasAllMethods && stage_ == Stage::kTrying &&
          (tries_each_state_ || (!is_by_one_foot_ && law.states_hash() == found_hash_));
 }
 
@@ -213,7 +213,7 @@ Seeking::Move Seeking::leave_trial(const Whole& whole, bool is_lost, Newton& new
   return {seeks_again(whole) ? Then::kMoreSafely : Then::kAnew};
 }
 
-/// On few feet that are nearly open a method may converge from rest, but not in a trial.
+/// A method, on few feet that are nearly open, may converge from rest, but not in a trial.
 bool Seeking::seeks_again(const Whole& whole) const {
   return is_trial_lost_ && !other_fails_ && whole.effort.method != whole.safest_method();
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/agent/conductor/whole.hpp"
 
-#include "methods.hpp"
+#include "holdfast/agent/features.hpp"
 
 namespace holdfast::agent {
 

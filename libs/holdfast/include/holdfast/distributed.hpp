@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "holdfast/agent/agent.hpp"     // IWYU pragma: export
-#include "holdfast/agent/listener.hpp"  // IWYU pragma: export
-#include "holdfast/holdfast.hpp"        // IWYU pragma: export
-#include "holdfast/sim/simulation.hpp"  // IWYU pragma: export
+#include "holdfast/agent/agent.hpp"          // IWYU pragma: export
+#include "holdfast/agent/wire/listener.hpp"  // IWYU pragma: export
+#include "holdfast/holdfast.hpp"             // IWYU pragma: export
+#include "holdfast/sim/simulation.hpp"       // IWYU pragma: export
 
 /// The facade's second half: the robot works its verdict out by itself, in simulation.
 ///
@@ -133,7 +133,8 @@ std::string report_text(const Structure& structure, const CheckResult& exact,
                         const DistributedRun& run, const TextOptions& options = {});
 
 /// The robot in the colours of its own load ratios.
-std::string picture_svg(const Structure& structure, const DistributedRun& run);
+std::string picture_svg(const Structure& structure, const DistributedRun& run,
+                        const io::FigureOptions& figure = {});
 
 /// The word that the exact answer has for a verdict of the robot.
 verdict::Verdict to_verdict(agent::Verdict verdict);

@@ -17,10 +17,14 @@ enum class FileFormat : std::uint8_t {
   kStructure,     ///< The same, VisibleSim's XML or a binary structure, as the ending says.
   kCsv,
   kSvg,
+  kFigure,  ///< SVG, PNG or PDF, as the ending says.
   kVtu,
   kPvd,  ///< The list of a series of .vtu files.
   kHtml,
 };
+
+/// Whether a path ends so, in small letters or large ones: ".png".
+bool has_ending(std::string_view path, std::string_view ending);
 
 /// Returns an error if a file's name ends as files of another format do: nobody can read an SVG
 /// that is called arm.png. Other endings, and none, are allowed.

@@ -71,6 +71,7 @@ struct Structure {
   io::Document document;
   model::Robot robot;
   std::vector<std::string> warnings;
+  io::ReportOrigin origin = {};  ///< What its reports say of where it is from.
 };
 
 /// A robot's cells where a program keeps them, in any order; as model::RobotSpec, but only looked
@@ -144,9 +145,8 @@ base::Result<Structure> load_file(const std::filesystem::path& path, int thread_
 base::Result<Structure> make_structure(io::Document document, std::string_view name = {},
                                        int thread_count = 0);
 
-/// One of the named structures in which solvers are compared: arm, cube, tower, scaffold, shell,
-/// portal, bridge, growth of cubes, ball, sheet, prism-wall of other lattices. Errors: no such
-/// family, a size that is not allowed.
+/// One of the structures of model::families(), to begin with or to compare solvers in: arm, arch,
+/// crane, stairs and more. Errors: no such family, a size that is not allowed.
 base::Result<io::Document> generate(std::string_view family, std::size_t size);
 
 /// The name of each family and the meaning of its size, in the order of their list.
@@ -209,7 +209,8 @@ struct TextOptions {
 std::string report_json(const Structure& structure, const CheckResult& result);
 std::string report_text(const Structure& structure, const CheckResult& result,
                         const TextOptions& options = {});
-std::string picture_svg(const Structure& structure, const CheckResult& result);
+std::string picture_svg(const Structure& structure, const CheckResult& result,
+                        const io::FigureOptions& figure = {});
 std::string picture_vtu(const Structure& structure, const CheckResult& result);
 
 /// Writes the JSON report into a stream, in a fixed amount of memory, however large the robot;
@@ -224,7 +225,7 @@ void write_connections_csv(std::ostream& out, const Structure& structure, const 
                            const io::ReportOptions& options = {});
 
 /// The entry of a JSON report for a file that could not be checked: {"name", "error", "where"}.
-std::string error_json(const base::Error& error, std::string_view name);
+std::string error_json(const base::Error& error, const io::ReportOrigin& origin);
 
 /// One line for people: "FILE: line 12: message".
 std::string describe(const base::Error& error, std::string_view file);

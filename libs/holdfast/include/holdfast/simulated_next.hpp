@@ -11,8 +11,8 @@
 #include "holdfast/trial.hpp"
 
 /// Finds the next places by the robot itself: a simulated robot judges all its free faces together,
-/// after its verdict (holdfast/agent/free_faces.hpp). The same robot can plan, judge and withdraw
-/// the cells that this leaves undecided, one after the other.
+/// after its verdict (holdfast/agent/free_faces/free_faces.hpp). The same robot can plan, judge and
+/// withdraw the cells that this leaves undecided, one after the other.
 namespace holdfast {
 
 /// The effort that something took the robot.

@@ -26,6 +26,7 @@ struct StepsFile {
   std::string name;  ///< The document's, or the file's without folder and ending.
   io::Document document;
   std::vector<std::string> warnings;
+  io::ReportOrigin origin = {};  ///< What its reports say of where it is from.
 };
 
 /// Reads VisibleSim XML, holdfast JSON or binary. Errors: those of read_document(); there is no
@@ -51,7 +52,8 @@ base::Result<StepsResult> judge_steps(const StepsFile& file, const StepsOptions&
 
 void write_steps_json(std::ostream& out, const StepsFile& file, const StepsResult& result);
 std::string steps_text(const StepsFile& file, const StepsResult& result);
-std::string steps_svg(const StepsFile& file, const StepsResult& result);
+std::string steps_svg(const StepsFile& file, const StepsResult& result,
+                      const io::FigureOptions& figure = {});
 std::string steps_html(const StepsFile& file, const StepsResult& result);
 
 /// Writes a series for ParaView: `path`, a .pvd file, and beside it a .vtu file for the start and

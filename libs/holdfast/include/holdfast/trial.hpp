@@ -126,7 +126,8 @@ std::string next_text(const Structure& structure, const NextResult& result,
 
 /// The structure as picture_svg() draws it, with a ghost in every place, in its verdict's colour.
 std::string next_svg(const Structure& structure, const CheckResult& checked,
-                     const NextResult& result, const NextReportOptions& options = {});
+                     const NextResult& result, const NextReportOptions& options = {},
+                     const io::FigureOptions& figure = {});
 
 /// Tries single changes of a structure with its planned modules attached; `result` is that of its
 /// check with the same options. Progress is called with how many changes are judged, of how many.

@@ -48,7 +48,7 @@ bool is_within(const base::Cell& cell, std::int32_t most) {
 const char* find_own_fault(const ModuleRecord& record, const solver::Bricks& bricks,
                            const base::Cell& low) {
   if (!is_within(record.place(), base::kCoordinateMax)) {
-    return "it lies outside the lattice, allowed are coordinates from -1000000 to 1000000";
+    return "it lies outside the lattice, expected coordinates from -1000000 to 1000000";
   }
   const base::Cell brick = bricks.of(record.place());
   if (brick.x < low.x || brick.y < low.y || brick.z < low.z) {
@@ -79,7 +79,7 @@ std::optional<base::Error> find_fault(const BinaryHead& head, std::uint64_t file
   }
   if (!is_within(head.low_corner(), kLowMax) || head.zero != 0) {
     return base::bad_input(
-        "the lowest corner is none of a robot's modules, or is not followed by 0", "byte 32");
+        "the lowest corner is not that of a robot's modules, or is not followed by 0", "byte 32");
   }
   const std::uint64_t expected = head.records_begin() + sizeof(ModuleRecord) * head.module_count;
   if (file_size != expected) {
@@ -179,7 +179,7 @@ std::optional<base::Error> sort_along_curve(const base::Lattice& lattice, const 
   std::ranges::sort(keyed, {}, key);
   const auto twice = std::ranges::adjacent_find(keyed, {}, key);
   if (twice != keyed.end()) {
-    return base::bad_input(fmt::format("two modules in the cell {}, allowed is one",
+    return base::bad_input(fmt::format("two modules in the cell {}, expected one",
                                        model::text(twice->second.place())));
   }
   std::ranges::transform(keyed, records.begin(), [](const auto& one) { return one.second; });
@@ -396,9 +396,9 @@ base::Result<ReadDocument> read_binary(std::string_view bytes, const ReadOptions
   }
   const BinaryHead& head = read_head.value();
   if (head.module_count > model::kModuleCountMax) {
-    return base::bad_input(fmt::format("{} modules, allowed are at most {}", head.module_count,
-                                       model::kModuleCountMax),
-                           "byte 16");
+    return base::bad_input(
+        fmt::format("{} modules, expected at most {}", head.module_count, model::kModuleCountMax),
+        "byte 16");
   }
   auto read = read_binary_text(head, bytes.substr(sizeof head, head.text_size), options);
   if (!read) {

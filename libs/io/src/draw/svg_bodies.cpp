@@ -8,7 +8,6 @@
 #include <tuple>
 
 #include "draw/svg_parts.hpp"
-#include "shapes/isometric.hpp"
 
 namespace holdfast::io {
 namespace {
@@ -54,7 +53,7 @@ std::vector<Stamp> stamps(std::span<const SeenFace> faces, double edge_px) {
 }
 
 Color module_color(const Scene& scene, std::size_t module) {
-  const Color color = color_of(scene.paints[module]);
+  const Color color = scene.color_of(scene.paints[module]);
   return scene.robot.modules()[module].is_planned ? lightened(color, kGlassLightness) : color;
 }
 

@@ -7,7 +7,6 @@
 
 #include "draw/svg_parts.hpp"
 #include "holdfast/model/lattice_beam.hpp"
-#include "shapes/isometric.hpp"
 
 namespace holdfast::io {
 namespace {
@@ -23,7 +22,7 @@ struct FacetLook {
 };
 
 constexpr std::array<FacetLook, 5> kLooks = {
-    {{FacetState::kPresses, "facet presses", "#17708f", true},
+    {{FacetState::kPresses, "facet pressed", "#17708f", true},
      {FacetState::kTilts, "facet tilts: on its thick edge or corner", "#c26a00", false},
      {FacetState::kOpen, "facet open", "#6b0a14", false},
      {FacetState::kBonded, "facet bonded", "#2f63a5", true},
@@ -39,7 +38,7 @@ constexpr double kHalfWidthMin = 0.06;
 bool has_facets(const Scene& scene) {
   const model::Robot& robot = scene.robot;
   return scene.projection.edge_px >= kFacetPxMin && !robot.facets().empty() &&
-         (scene.bodies || robot.has_bonded_facets());
+         (scene.is_general || robot.has_bonded_facets());
 }
 
 const mechanics::ContactState* contact_of(const Scene& scene, std::size_t facet) {
@@ -73,8 +72,8 @@ class FacetPlace {
     const double half_width = std::max(kHalfWidthMin, scene.robot.foot_half_width_mm() /
                                                           scene.robot.material().pitch_mm) *
                               scene.projection.edge_px;
-    x_ = half_width * seen_at(axes[0]);
-    y_ = half_width * seen_at(axes[1]);
+    x_ = half_width * scene.projection.axes.seen_at(axes[0]);
+    y_ = half_width * scene.projection.axes.seen_at(axes[1]);
   }
 
   /// A point of the facet; its corners are at (-1, -1) to (1, 1).
@@ -128,7 +127,8 @@ std::string draw_state(const Scene& scene, const FacetLook& look) {
     for (std::size_t i = 0; i < scene.robot.facets().size(); ++i) {
       const model::Facet& facet = scene.robot.facets()[i];
       const Place way = base::unit_vector(scene.robot.lattice(), facet.direction);
-      if (state_of(scene, i) != look.state || (nearness(way) > 0) != is_near) {
+      if (state_of(scene, i) != look.state ||
+          (scene.projection.axes.nearness(way) > 0) != is_near) {
         continue;
       }
       const FacetPlace place(scene, facet);

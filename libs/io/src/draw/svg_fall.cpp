@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "draw/svg_parts.hpp"
-#include "shapes/isometric.hpp"
 
 namespace holdfast::io {
 namespace {
@@ -16,8 +15,8 @@ constexpr double kArrowPx = 46;
 constexpr double kAxisPx = 46;
 
 /// The direction of a vector on the picture, of length one; none along the line of sight.
-std::optional<ScreenPoint> direction_of(const Place& vector) {
-  const ScreenPoint way = seen_at(vector);
+std::optional<ScreenPoint> direction_of(const Scene& scene, const Place& vector) {
+  const ScreenPoint way = scene.projection.axes.seen_at(vector);
   const double size = length(way);
   return size > 0.05 * length({vector[0], length({vector[1], vector[2]})})
              ? std::optional((1 / size) * way)
@@ -46,7 +45,7 @@ std::string draw_pivot(const Scene& scene, const Motion& motion) {
     return pivot(from, place_of(scene, motion.to_mm), false);
   }
   if (motion.kind == Motion::Kind::kTurns) {
-    if (const auto way = direction_of(motion.angular)) {
+    if (const auto way = direction_of(scene, motion.angular)) {
       return pivot(from - kAxisPx * *way, from + kAxisPx * *way, true);
     }
   }
@@ -68,7 +67,7 @@ std::string draw_fall(const Scene& scene) {
   }
   const ScreenPoint mass = scene.projection.at(scene.centre_of_mass());
   std::string out = "<g class=\"fall\" stroke-linecap=\"round\">\n" + draw_pivot(scene, *motion);
-  if (const auto way = direction_of(motion->velocity)) {
+  if (const auto way = direction_of(scene, motion->velocity)) {
     out += arrow(mass, mass + kArrowPx * *way, hex(kUnstableColor));
   }
   return out + mass_symbol(mass, 7) + "</g>\n";

@@ -76,9 +76,10 @@ ModulePaint paint_of(const Ghost& ghost) {
 
 std::string write_svg_with_ghosts(const model::Robot& robot, std::span<const Ghost> ghosts,
                                   const Assessment& assessment, std::string_view title,
-                                  std::span<const model::Obstacle> obstacles) {
+                                  std::span<const model::Obstacle> obstacles,
+                                  const FigureOptions& figure) {
   const Assessment mapped = with_ghosts(assessment, robot, ghosts.size());
-  Scene scene(robot, mapped, obstacles);
+  Scene scene(robot, mapped, obstacles, figure);
   scene.ghost_count = ghosts.size();
   std::ranges::transform(ghosts, scene.paints.end() - static_cast<std::ptrdiff_t>(ghosts.size()),
                          paint_of);

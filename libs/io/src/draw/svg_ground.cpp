@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "draw/svg_parts.hpp"
 
@@ -30,41 +31,72 @@ std::int32_t first_multiple(std::int32_t from, std::int32_t step) {
   return rest > 0 ? from + step - rest : from - rest;
 }
 
+/// How long a step of the floor along x (0) or y (1) is on the picture, in edges.
+double seen_step(const Scene& scene, std::size_t axis) {
+  const ViewAxes& axes = scene.projection.axes;
+  const base::Cell step = axis == 0 ? base::Cell{1, 0, 0} : base::Cell{0, 1, 0};
+  return axes.is_isometric ? 1 : length(axes.seen_at(base::place_of(scene.robot.lattice(), step)));
+}
+
+/// The step of grid lines across an axis. One line is left where the floor is seen edge-on.
+std::int32_t grid_step(const Scene& scene, std::size_t axis) {
+  const auto& [first, last] = scene.plan;
+  const std::int32_t step = step_for(scene.projection.edge_px * seen_step(scene, axis), kGridPxMin);
+  const std::int32_t count = 3 + (axis == 0 ? last.x - first.x : last.y - first.y);
+  return scene.projection.axes.is_isometric ? step : std::min(step, count);
+}
+
 std::string draw_grid(const Scene& scene) {
   const auto& [first, last] = scene.plan;
-  const std::int32_t step = step_for(scene.projection.edge_px, kGridPxMin);
+  const std::int32_t step_x = grid_step(scene, 0);
+  const std::int32_t step_y = grid_step(scene, 1);
   Path path;
   const auto add_line = [&](ScreenPoint from, ScreenPoint to) {
     path.move_to(scene.projection.at(scene.floor_point(from.x, from.y)));
     path.line_to(scene.projection.at(scene.floor_point(to.x, to.y)));
   };
   // Lines run between cells, half a cell below the multiples of the step.
-  for (std::int32_t x = first_multiple(first.x - 1, step); x <= last.x + 2; x += step) {
+  for (std::int32_t x = first_multiple(first.x - 1, step_x); x <= last.x + 2; x += step_x) {
     add_line({x - 0.5, first.y - 1.5}, {x - 0.5, last.y + 1.5});
   }
-  for (std::int32_t y = first_multiple(first.y - 1, step); y <= last.y + 2; y += step) {
+  for (std::int32_t y = first_multiple(first.y - 1, step_y); y <= last.y + 2; y += step_y) {
     add_line({first.x - 1.5, y - 0.5}, {last.x + 1.5, y - 0.5});
   }
   return fmt::format("<path fill=\"none\" stroke=\"#d8dee0\" stroke-width=\"0.8\" d=\"{}\"/>\n",
                      path.text());
 }
 
-std::string draw_numbers(const Scene& scene) {
+/// The numbers along x (0) or y (1), on that side of the floor that is nearer to the eye.
+std::string draw_numbers_along(const Scene& scene, std::size_t axis) {
+  const double seen = seen_step(scene, axis);
+  if (seen < 0.05) {
+    return {};
+  }
   const auto& [first, last] = scene.plan;
-  const std::int32_t step = step_for(scene.projection.edge_px, kNumberPxMin);
-  std::string out = fmt::format("<g class=\"coordinates\" font-size=\"11\" fill=\"#8a9299\">\n");
-  const auto add = [&](double x, double y, double dx, const char* anchor, std::int32_t value) {
-    const ScreenPoint point = scene.projection.at(scene.floor_point(x, y)) + ScreenPoint{dx, 11};
+  const ViewAxes& axes = scene.projection.axes;
+  const std::int32_t step = step_for(scene.projection.edge_px * seen, kNumberPxMin);
+  const bool is_x = axis == 0;
+  const double outwards = is_x ? (axes.eye[1] <= 0 ? -1 : 1) : (axes.eye[0] >= 0 ? 1 : -1);
+  const ScreenPoint way = axes.seen_at(is_x ? Place{0, outwards, 0} : Place{outwards, 0, 0});
+  const double side = way.x < -0.05 ? -1 : way.x > 0.05 ? 1 : 0;
+  const char* const anchor = side < 0 ? "end" : side > 0 ? "start" : "middle";
+  const double down = std::abs(way.y) < 0.05 && side != 0 ? 4 : 11;
+  std::string out;
+  for (std::int32_t k = first_multiple(is_x ? first.x : first.y, step);
+       k <= (is_x ? last.x : last.y); k += step) {
+    const LatticePoint at = is_x
+                                ? scene.floor_point(k, outwards < 0 ? first.y - 1.5 : last.y + 1.5)
+                                : scene.floor_point(outwards < 0 ? first.x - 1.5 : last.x + 1.5, k);
+    const ScreenPoint point = scene.projection.at(at) + ScreenPoint{4 * side, down};
     out += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"{}\">{}</text>\n", number(point.x),
-                       number(point.y), anchor, value);
-  };
-  for (std::int32_t x = first_multiple(first.x, step); x <= last.x; x += step) {
-    add(x, first.y - 1.5, -4, "end", x);
+                       number(point.y), anchor, k);
   }
-  for (std::int32_t y = first_multiple(first.y, step); y <= last.y; y += step) {
-    add(last.x + 1.5, y, 4, "start", y);
-  }
-  return out + "</g>\n";
+  return out;
+}
+
+std::string draw_numbers(const Scene& scene) {
+  return fmt::format("<g class=\"coordinates\" font-size=\"11\" fill=\"#8a9299\">\n{}{}</g>\n",
+                     draw_numbers_along(scene, 0), draw_numbers_along(scene, 1));
 }
 
 std::string polygon_path(const Scene& scene) {
@@ -147,6 +179,12 @@ std::string draw_mass(const Scene& scene) {
 }  // namespace
 
 std::string arrow(ScreenPoint from, ScreenPoint to, const std::string& color) {
+  if (length(to - from) < 1e-6) {  // Along the line of sight.
+    return fmt::format(
+        "<circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"{}\" stroke=\"#fff\" "
+        "stroke-width=\"1.5\"/>\n",
+        number(from.x), number(from.y), color);
+  }
   const ScreenPoint along = (1 / length(to - from)) * (to - from);
   const ScreenPoint across = {-along.y, along.x};
   const ScreenPoint neck = to - 11 * along;

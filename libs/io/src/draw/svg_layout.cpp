@@ -6,8 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "shapes/isometric.hpp"
-
 namespace holdfast::io {
 namespace {
 
@@ -38,12 +36,12 @@ struct Extent {
   }
 };
 
-std::pair<double, double> lattice_of(const base::Cell& lowest, LatticePoint point) {
+std::pair<double, double> lattice_of(const Projection& projection, LatticePoint point) {
   // The corner with the smallest coordinates of the lowest cell is the origin.
-  const double x = point.x - lowest.x + 0.5;
-  const double y = point.y - lowest.y + 0.5;
-  const double z = point.z - lowest.z + 0.5;
-  return {x + y, x - y - 2 * z};
+  const base::Cell& lowest = projection.lowest;
+  const Place place = {point.x - lowest.x + 0.5, point.y - lowest.y + 0.5,
+                       point.z - lowest.z + 0.5};
+  return {dot(projection.axes.u, place), dot(projection.axes.v, place)};
 }
 
 PlanRange plan_range(const model::Robot& robot) {
@@ -59,7 +57,7 @@ PlanRange plan_range(const model::Robot& robot) {
 }
 
 /// Widens the extent by all bodies that are drawn.
-void add_bodies(const BodyView& view, const base::Cell& lowest, Extent& extent) {
+void add_bodies(const BodyView& view, const Projection& projection, Extent& extent) {
   constexpr double kAcross = kBallRadius / kCos30;  // Of u; v is twice the height.
   const auto add_faces = [&](std::span<const SeenFace> faces, double u, double v) {
     for (const SeenFace& face : faces) {
@@ -69,7 +67,7 @@ void add_bodies(const BodyView& view, const base::Cell& lowest, Extent& extent) 
     }
   };
   for (const BodyItem& item : view.items()) {
-    const auto [u, v] = lattice_of(lowest, LatticePoint(view.place_of(item)));
+    const auto [u, v] = lattice_of(projection, LatticePoint(view.place_of(item)));
     if (item.is_obstacle) {
       add_faces(view.obstacle_faces(), u, v);
     } else if (view.body() == Body::kBall) {
@@ -84,11 +82,11 @@ void add_bodies(const BodyView& view, const base::Cell& lowest, Extent& extent) 
 Extent extent_of(const Scene& scene) {
   Extent extent;
   const auto add_point = [&](LatticePoint point) {
-    const auto [u, v] = lattice_of(scene.projection.lowest, point);
+    const auto [u, v] = lattice_of(scene.projection, point);
     extent.add(u, v);
   };
   if (scene.bodies) {
-    add_bodies(*scene.bodies, scene.projection.lowest, extent);
+    add_bodies(*scene.bodies, scene.projection, extent);
   } else {
     for (const Triangle& triangle : (scene.all ? scene.all : scene.existing)->triangles()) {
       extent.add(triangle.u, triangle.middle - 1);
@@ -144,7 +142,7 @@ ScreenPoint Projection::at(Vertex vertex) const {
 }
 
 ScreenPoint Projection::at(LatticePoint point) const {
-  const auto [u, v] = lattice_of(lowest, point);
+  const auto [u, v] = lattice_of(*this, point);
   return at(u, v);
 }
 
@@ -154,23 +152,26 @@ std::pair<double, double> Projection::lattice_at(ScreenPoint point) const {
 }
 
 Scene::Scene(const model::Robot& a_robot, const verdict::Assessment& an_assessment,
-             std::span<const model::Obstacle> obstacles)
+             std::span<const model::Obstacle> obstacles, FigureOptions a_figure)
     : robot(a_robot),
       assessment(an_assessment),
+      figure(std::move(a_figure)),
       paints(paint_modules(robot, assessment)),
       plan(plan_range(robot)) {
+  projection.axes = axes_of(figure.view);
   NearObstacles near = obstacles_near(robot, obstacles);
   const bool is_cubic = robot.lattice() == base::kCubic;
   if (is_cubic) {
     projection.lowest = lowest_cell(robot);
   }
-  if (is_cubic && near.cells.empty() && !near.are_too_many) {
+  is_general = !is_cubic || !near.cells.empty() || near.are_too_many;
+  if (!is_general && projection.axes.is_isometric) {
     existing.emplace(robot, Cast::kExisting);
     if (robot.planned_count() > 0) {
       all.emplace(robot, Cast::kAll);
     }
   } else {
-    bodies.emplace(robot, std::move(near));
+    bodies.emplace(robot, std::move(near), projection.axes);
   }
   lay_out(*this);
   if (bodies) {
@@ -222,10 +223,10 @@ bool Scene::has_grid() const {
     return false;
   }
   // Cubes on a floor that a fixed module holds have none.
-  const bool is_general =
-      bodies || assessment.stability_rule == verdict::StabilityRule::kContactForces;
+  const bool may_touch =
+      is_general || assessment.stability_rule == verdict::StabilityRule::kContactForces;
   return has_polygon() ||
-         (is_general && std::ranges::any_of(robot.facets(), [&](const model::Facet& facet) {
+         (may_touch && std::ranges::any_of(robot.facets(), [&](const model::Facet& facet) {
             return touches_floor(robot, facet);
           }));
 }

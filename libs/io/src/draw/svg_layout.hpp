@@ -9,7 +9,7 @@
 #include "holdfast/verdict/assessment.hpp"
 #include "shapes/body_view.hpp"
 #include "shapes/module_paint.hpp"
-#include "shapes/svg_text.hpp"
+#include "shapes/view_axes.hpp"
 #include "shapes/visible_surface.hpp"
 
 /// Lays out the card: header, drawing, legend from top to bottom.
@@ -41,6 +41,7 @@ struct LatticePoint {
 
 /// The map from lattice coordinates to pixels.
 struct Projection {
+  ViewAxes axes;
   base::Cell lowest;      ///< Whose lower corner is the origin of (u, v); cubic lattices only.
   double edge_px = 1;     ///< Length of a cube's edge on the picture.
   ScreenPoint origin_px;  ///< Where vertex (0, 0) lies.
@@ -69,13 +70,16 @@ struct PlanRange {
 /// Everything that is drawn, and where.
 struct Scene {
   Scene(const model::Robot& a_robot, const verdict::Assessment& an_assessment,
-        std::span<const model::Obstacle> obstacles = {});
+        std::span<const model::Obstacle> obstacles = {}, FigureOptions a_figure = {});
 
   const model::Robot& robot;
   const verdict::Assessment& assessment;
+  FigureOptions figure;
+  bool is_general = false;  ///< Not just cubes on a floor: facets that touch are shown.
   std::vector<ModulePaint> paints;
   std::size_t ghost_count = 0;  ///< The last modules are none, but places where one may go.
-  /// Cubes without obstacles are drawn as what is seen of their faces; all else as bodies.
+  /// Cubes without obstacles in isometric view are drawn as what is seen of their faces; all else
+  /// as bodies.
   std::optional<BodyView> bodies;
   std::optional<VisibleSurface> existing;  ///< Without planned modules; none if there are bodies.
   std::optional<VisibleSurface> all;       ///< With them; none if there are none, or bodies.
@@ -113,6 +117,11 @@ struct Scene {
 
   /// The share of a box that the robot covers, 0 to 1, from samples.
   double covered_share(const Box& box) const;
+
+  /// The colour of a module.
+  Color color_of(const ModulePaint& paint) const {
+    return io::color_of(paint, figure.is_grey ? Palette::kGrey : Palette::kColour);
+  }
 
   /// The opacity of planned modules, or of ghosts, through which the robot has to be seen.
   const char* glass() const { return ghost_count > 0 ? "0.3" : "0.7"; }

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
-#include <tuple>
+#include <utility>
 
 #include "draw/svg_parts.hpp"
 #include "holdfast/io/report.hpp"
@@ -138,14 +138,14 @@ Entry facet_entry(const FacetSign& sign) {
 /// The entries for what occurs in the picture.
 std::vector<Entry> entries(const Scene& scene) {
   std::vector<Entry> list;
-  constexpr std::array<std::tuple<Meaning, const char*, Color>, 4> kColors = {
-      {{Meaning::kBroken, "a connection breaks (1 or more)", kBrokenColor},
-       {Meaning::kFixed, "fixed module", kFixedColor},
-       {Meaning::kUnstable, "unstable robot", kUnstableColor},
-       {Meaning::kUnknown, "loads not known", kUnknownColor}}};
-  for (const auto& [meaning, label, color] : kColors) {
+  constexpr std::array<std::pair<Meaning, const char*>, 4> kMeanings = {
+      {{Meaning::kBroken, "a connection breaks (1 or more)"},
+       {Meaning::kFixed, "fixed module"},
+       {Meaning::kUnstable, "unstable robot"},
+       {Meaning::kUnknown, "loads not known"}}};
+  for (const auto& [meaning, label] : kMeanings) {
     if (has_meaning(scene, meaning)) {
-      list.push_back(color_entry(label, color));
+      list.push_back(color_entry(label, scene.color_of({.meaning = meaning})));
     }
   }
   if (scene.robot.planned_count() > scene.ghost_count) {
@@ -174,14 +174,15 @@ std::vector<Entry> entries(const Scene& scene) {
   return list;
 }
 
-std::string draw_bar(ScreenPoint at) {
+std::string draw_bar(const Scene& scene, ScreenPoint at) {
   constexpr int kSteps = 40;
   std::string out = "<g class=\"colour-bar\" shape-rendering=\"crispEdges\">\n";
   for (int i = 0; i < kSteps; ++i) {
-    out +=
-        fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\"/>\n",
-                    number(at.x + kBarWidth * i / kSteps), number(at.y), number(kBarWidth / kSteps),
-                    number(kBarHeight), hex(load_color((200 * i + 100) / (2 * kSteps))));
+    out += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\"/>\n",
+                       number(at.x + kBarWidth * i / kSteps), number(at.y),
+                       number(kBarWidth / kSteps), number(kBarHeight),
+                       hex(scene.color_of({.meaning = Meaning::kLoad,
+                                           .percent = (200 * i + 100) / (2 * kSteps)})));
   }
   out += fmt::format(
       "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" "
@@ -256,6 +257,9 @@ std::string draw_header(const Scene& scene, std::string_view title) {
 }
 
 Legend draw_legend(const Scene& scene) {
+  if (!scene.figure.has_legend) {
+    return {.text = {}, .height = kCardMargin / 2};
+  }
   const double top = scene.drawing.bottom + 8;
   const double right = scene.card_width - kCardMargin;
   std::string out = "<g class=\"legend\">\n";
@@ -265,7 +269,7 @@ Legend draw_legend(const Scene& scene) {
   double bottom = top;
   if (has_meaning(scene, Meaning::kLoad)) {
     out += legend_text({left, top + 16}, "share of the connection's strength");
-    out += draw_bar({left, top + 24});
+    out += draw_bar(scene, {left, top + 24});
     left += kBarWidth + 42;
     bottom = top + 64;
   }

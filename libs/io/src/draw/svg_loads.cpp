@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "draw/svg_parts.hpp"
-#include "shapes/isometric.hpp"
 
 namespace holdfast::io {
 namespace {
@@ -65,7 +64,7 @@ std::string draw_force(const Scene& scene, const PayloadSign& sign, double force
   if (size <= kNoShare * force_max) {
     return {};
   }
-  const ScreenPoint way = seen_at(scaled(1 / size, sign.force));
+  const ScreenPoint way = scene.projection.axes.seen_at(scaled(1 / size, sign.force));
   const double reach = std::max(
       kArrowPxMin, length(way) * (kArrowPxMin + (kArrowPxMax - kArrowPxMin) * size / force_max));
   // Along the line of sight there is no way: a point.
@@ -83,7 +82,7 @@ std::string draw_torque(const Scene& scene, const PayloadSign& sign) {
   const ScreenPoint centre = scene.projection.at(LatticePoint(
       base::node_place(scene.robot.lattice(), scene.robot.modules()[sign.module].cell)));
   // Counter-clockwise for the eye if the torque points towards it; the screen's y points down.
-  const double turn = nearness(sign.torque) >= 0 ? -1 : 1;
+  const double turn = scene.projection.axes.nearness(sign.torque) >= 0 ? -1 : 1;
   const ScreenPoint start = centre + ScreenPoint{kRadius, 0};
   const ScreenPoint end = centre + ScreenPoint{0, -turn * kRadius};
   const std::string arc =
@@ -137,7 +136,7 @@ std::string draw_gravity(const Scene& scene, ScreenPoint from) {
   const Place& gravity = scene.robot.gravity();
   const double size = size_of(gravity);
   constexpr double kLength = 24;
-  const ScreenPoint way = seen_at(scaled(1 / size, gravity));
+  const ScreenPoint way = scene.projection.axes.seen_at(scaled(1 / size, gravity));
   const double share = std::max(length(way), 1e-9);
   const ScreenPoint to = from + (std::max(share, 0.4) * kLength / share) * way;
   const ScreenPoint text = to + (9 / share) * way;

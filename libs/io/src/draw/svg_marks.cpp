@@ -118,7 +118,7 @@ bool marks_loads(const Scene& scene) {
          *assessment.load_ratio_max >= kNoLoad;
 }
 
-/// The style of the worst connection's mark, which is discreet where the connection holds.
+/// The style of the worst connection's mark, which is unobtrusive where the connection holds.
 struct WorstStyle {
   bool is_broken = false;
   const char* color = kInk;

@@ -127,7 +127,7 @@ std::string fill_of(const Scene& scene, const VisibleSurface& surface, bool is_p
   std::vector<PaintedFace> faces;
   for (const VisibleFace& face : surface.faces()) {
     if (scene.robot.modules()[face.module].is_planned == is_planned) {
-      const Color solid = color_of(scene.paints[face.module]);
+      const Color solid = scene.color_of(scene.paints[face.module]);
       const Color color = is_planned ? lightened(solid, kGlassLightness) : solid;
       faces.push_back({.face = face, .color = shaded(color, face.side)});
     }

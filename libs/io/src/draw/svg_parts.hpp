@@ -25,7 +25,7 @@ inline constexpr double kNoLoad = 0.005;
 Headline headline(const Scene& scene);
 
 /// The whole picture.
-std::string draw_card(const Scene& scene, std::string_view title);
+std::string draw_card(const Scene& scene, std::string_view name);
 
 std::string draw_header(const Scene& scene, std::string_view title);
 

@@ -31,6 +31,7 @@ constexpr double kPanelGap = 34;
 constexpr std::size_t kColumnMax = 980;
 
 constexpr std::array<const char*, 4> kVerdictInk = {"#6fae7d", "#d1495b", "#8e5aa8", "#b9bfc4"};
+constexpr std::array<const char*, 4> kVerdictGrey = {"#d8d8d8", "#1e1e1e", "#646464", "#f5f5f5"};
 
 /// Some steps in a row, as one.
 struct Column {
@@ -73,7 +74,8 @@ void add_text(std::string& out, double x, double y, std::string_view anchor, dou
 }
 
 /// A row for every stage, with what its verdict is, runs of one verdict in one piece.
-void add_bands(std::string& out, const std::vector<Column>& columns) {
+void add_bands(std::string& out, const std::vector<Column>& columns, bool is_grey) {
+  const std::array<const char*, 4>& inks = is_grey ? kVerdictGrey : kVerdictInk;
   for (std::size_t k = 0; k < plan::kStageCount; ++k) {
     const double y = kBandTop + static_cast<double>(k) * (kBandHeight + 3);
     add_text(out, kLeft - 8, y + 13, "end", 12, plan::name(static_cast<plan::Stage>(k)));
@@ -87,7 +89,7 @@ void add_bands(std::string& out, const std::vector<Column>& columns) {
           "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" "
           "fill=\"{}\"><title>{}</title></rect>\n",
           number(from), number(y), number(x_of(end, columns.size()) - from), number(kBandHeight),
-          kVerdictInk[static_cast<std::size_t>(columns[i].verdicts[k])],
+          inks[static_cast<std::size_t>(columns[i].verdicts[k])],
           verdict::name(columns[i].verdicts[k]));
       i = end;
     }
@@ -177,23 +179,23 @@ void add_step_numbers(std::string& out, const plan::SequenceJudgement& judged, d
 
 }  // namespace
 
-std::string write_steps_svg(const StepsEntry& entry) {
+std::string write_steps_svg(const StepsEntry& entry, const FigureOptions& figure) {
   const std::vector<Column> columns = columns_of(*entry.judgement);
   const double first_panel = kBandTop + plan::kStageCount * (kBandHeight + 3) + kPanelGap;
   const double second_panel = first_panel + kPanelHeight + kPanelGap;
   const double height = second_panel + kPanelHeight + 44;
   std::string out = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
-      "height=\"{1}\" font-family=\"sans-serif\">\n<rect width=\"{0}\" height=\"{1}\" "
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" {3} "
+      "font-family=\"sans-serif\">\n<rect width=\"{0}\" height=\"{1}\" "
       "fill=\"{2}\"/>\n",
-      number(kWidth), number(height), kCardFill);
+      number(kWidth), number(height), kCardFill, size_attributes(figure, kWidth, height));
   add_text(out, kLeft, 24, "start", 16,
-           fit_text(fmt::format("{}: {}, {}", entry.name,
+           fit_text(fmt::format("{}: {}, {}", figure.title.empty() ? entry.name : figure.title,
                                 host::counted(entry.judgement->steps.size(), "step"),
                                 verdict::name(entry.judgement->verdict())),
                     16, kRight - kLeft),
            kInk);
-  add_bands(out, columns);
+  add_bands(out, columns, figure.is_grey);
   add_curve(out, columns,
             {.value = &Column::ratio, .title = "largest load ratio", .limit = 1, .ink = "#2f6690"},
             first_panel);
@@ -201,7 +203,7 @@ std::string write_steps_svg(const StepsEntry& entry) {
             {.value = &Column::margin, .title = "margin, mm", .limit = 0, .ink = "#3f6b7d"},
             second_panel);
   add_step_numbers(out, *entry.judgement, second_panel + kPanelHeight + 18);
-  return out + "</svg>\n";
+  return finished(out + "</svg>\n", figure);
 }
 
 std::string write_steps_html(const StepsEntry& entry) {

@@ -155,7 +155,7 @@ void expect_one_strength(JsonReading& reading, const Json& value, const JsonPlac
   if (has("strength_n") && std::ranges::any_of(kClassStrengthKeys, has)) {
     reading.fail(place.at("strength_n"),
                  "the strength stands here and in \"strength_vertical_n\" or "
-                 "\"strength_lateral_n\", allowed is one of the two ways");
+                 "\"strength_lateral_n\", expected one of the two ways");
   }
 }
 

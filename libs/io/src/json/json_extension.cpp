@@ -104,11 +104,10 @@ void read_gravity(JsonReading& reading, const Json& value, const JsonPlace& plac
   const std::array<double, 3> gravity = vector(reading, value, place);
   Document& document = reading.document;
   if (!reading.has_failed() && gravity == std::array<double, 3>{}) {
-    reading.fail(
-        place,
-        "gravity is zero, allowed is a vector: without weight a robot rests on nothing, and "
-        "there is nothing to hold; where loads are meant to act alone, give a tiny one, "
-        "such as [0, 0, -1e-9]");
+    reading.fail(place,
+                 "gravity is zero, expected a vector: without weight a robot rests on nothing, and "
+                 "there is nothing to hold; where loads are meant to act alone, give a tiny one, "
+                 "such as [0, 0, -1e-9]");
   }
   if (gravity[0] == 0 && gravity[1] == 0 && gravity[2] < 0) {
     document.material.gravity_m_s2 = -gravity[2];
@@ -376,7 +375,7 @@ void check_kinds(JsonReading& reading) {
     if (!own.kind.empty() && std::ranges::find(names, own.kind) == names.end()) {
       reading.fail(
           {base::ErrorCode::kBadInput,
-           fmt::format("the kind {} is none of those in \"kinds\", which has {}", excerpt(own.kind),
+           fmt::format("the kind {} is not in \"kinds\", which has {}", excerpt(own.kind),
                        names.empty() ? "none" : excerpt(fmt::format("{}", fmt::join(names, ", ")))),
            own_place(own) + "/kind"});
     }

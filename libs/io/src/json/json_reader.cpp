@@ -271,7 +271,7 @@ void JsonReader::spell_as_known(Attributes& attributes, Names known, const JsonP
     const auto spelling = known_spelling(name, known);
     if (spelling && *spelling != name) {
       if (find_attribute(attributes, *spelling) != nullptr) {
-        reading_.fail(place, fmt::format("{} and {} differ only in case, allowed is one",
+        reading_.fail(place, fmt::format("{} and {} differ only in case, expected one",
                                          excerpt(*spelling), excerpt(name)));
         return;
       }

@@ -35,7 +35,7 @@ void JsonStream::begin_value() {
   }
   if (depth_ > 0) {
     if (!is_first_) {
-      *out_ += ',';
+      *out_ += layout_ == Layout::kLine ? ", " : ",";
     }
     begin_line();
   }
@@ -63,7 +63,7 @@ void JsonStream::key(std::string_view name) {
   begin_value();
   *out_ += '"';
   *out_ += name;
-  *out_ += layout_ == Layout::kIndented ? "\": " : "\":";
+  *out_ += layout_ == Layout::kCompact ? "\":" : "\": ";
   is_after_key_ = true;
 }
 

@@ -135,7 +135,7 @@ class TreeBuilder {
       return fail(name, fmt::format("one object has more than {} keys", kAttributeCountMax));
     }
     if (object.contains(name)) {
-      return fail(name, "the same key twice in one object, allowed is once");
+      return fail(name, "the same key twice in one object, expected once");
     }
     member_ = &object[name];
     return true;

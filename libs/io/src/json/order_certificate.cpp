@@ -254,7 +254,7 @@ std::vector<OwnParameters> plan_modules(const Document& target,
 base::Result<model::RobotSpec> order_target(const Document& document) {
   if (!document.extension.plan.empty() || document.steps.size() > 1) {
     return base::Error{base::ErrorCode::kBadInput,
-                       "the target has steps of its own: an order is sought for modules that exist "
+                       "the target has steps of its own: an order is for modules that exist "
                        "or are planned at once, without \"steps\" and \"later_steps\"",
                        step_list(document)};
   }

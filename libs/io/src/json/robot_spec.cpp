@@ -78,7 +78,7 @@ std::optional<base::Error> find_fault(const Connectors& connectors, const JsonPl
     for (const std::optional<double>& value : parameter.values) {
       if (!(value.value_or(1) >= kPositiveMin)) {
         return base::Error{base::ErrorCode::kBadInput,
-                           fmt::format("found {}, allowed is {} and more", *value, kPositiveMin),
+                           fmt::format("expected {} or more, found {}", kPositiveMin, *value),
                            place.at(parameter.key).pointer()};
       }
     }
@@ -124,7 +124,7 @@ std::optional<base::Error> find_fault(const Document& document) {
     const double mass = kind.mass_kg.value_or(1);
     if (!fault && !(mass >= kPositiveMin && mass <= kPositiveMax)) {
       fault = {base::ErrorCode::kBadInput,
-               fmt::format("found {}, allowed is {} to {}", mass, kPositiveMin, kPositiveMax),
+               fmt::format("expected {} to {}, found {}", kPositiveMin, kPositiveMax, mass),
                place.at("mass_kg").pointer()};
     }
     fault = fault ? fault : find_fault(kind.connectors, place);
@@ -182,8 +182,8 @@ std::optional<base::Error> add_own(const Document& document,
     const auto kind = std::ranges::find(kinds, own.kind, &model::ModuleKind::name);
     if (kind == kinds.end()) {
       return base::Error{base::ErrorCode::kBadInput,
-                         fmt::format("the kind {} of {} is none of those in \"kinds\"",
-                                     excerpt(own.kind), model::text(*cell)),
+                         fmt::format("the kind {} of {} is not in \"kinds\"", excerpt(own.kind),
+                                     model::text(*cell)),
                          "/kinds"};
     }
     if (kind != kinds.begin()) {

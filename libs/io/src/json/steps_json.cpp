@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/io/json_stream.hpp"
 #include "holdfast/io/report.hpp"
-#include "holdfast/io/report_head.hpp"
 #include "holdfast/io/steps_report.hpp"
 
 namespace holdfast::io {
@@ -84,7 +83,9 @@ void write_steps_json(std::ostream& out, const StepsEntry& entry) {
   std::string text;
   JsonStream json(text);
   json.begin_object();
-  write_report_head(json, "steps");
+  write_report_head(
+      json,
+      {.command = "steps", .origin = entry.origin, .module_count = entry.document->modules.size()});
   json.member("name", entry.name);
   json.member("verdict", verdict::name(judged.verdict()));
   write_stage_id(json, "first_unsafe", judged.first_unsafe);

@@ -118,9 +118,8 @@ std::string limit_text(const ReportEntry& entry) {
   }
   std::string text =
       load.outcome == Outcome::kFound
-          ? fmt::format(
-                "  limit load  no forces balance more than {} times these loads, in {:.2f} s\n",
-                beside_one(load.low, 4), entry.limit_seconds)
+          ? fmt::format("  limit load  {} times these loads at most, in {:.2f} s\n",
+                        beside_one(load.low, 4), entry.limit_seconds)
       : load.high < limit::kFactorMax
           ? fmt::format("  limit load  not found: from {} to {} times these loads, in {:.2f} s\n",
                         beside_one(load.low, 4), beside_one(load.high, 4), entry.limit_seconds)

@@ -10,7 +10,6 @@
 
 #include "holdfast/host/text.hpp"
 #include "holdfast/io/beside_one.hpp"
-#include "holdfast/io/report_head.hpp"
 #include "json/json_text.hpp"
 #include "json/json_values.hpp"
 
@@ -135,11 +134,10 @@ base::Result<model::RobotSpec> standing_spec(const Document& document, std::stri
   if (document.steps.empty() && document.extension.plan.empty()) {
     return make_spec(document);
   }
-  return base::Error{
-      .code = base::ErrorCode::kBadInput,
-      .message =
-          fmt::format("{} has planned modules or steps; allowed are robots as they stand", which),
-      .where = step_pointer(document, 0)};
+  return base::Error{.code = base::ErrorCode::kBadInput,
+                     .message = fmt::format(
+                         "{} has planned modules or steps; expected robots as they stand", which),
+                     .where = step_pointer(document, 0)};
 }
 
 base::Result<plan::MoveTask> move_task(const Document& start, const Document& target) {
@@ -157,7 +155,9 @@ base::Result<plan::MoveTask> move_task(const Document& start, const Document& ta
 std::string move_json(const MoveReport& report) {
   const plan::MovePlan& plan = report.plan;
   const StageCount stages = count_stages(plan);
-  Items items = report_head("move");
+  Items items = report_head({.command = "move",
+                             .origin = report.origin,
+                             .module_count = report.task.start.existing.size()});
   const Items found = {member("result", json_text(std::string(plan::name(plan.outcome)))),
                        member("steps", fmt::format("{}", plan.steps.size())),
                        member("steps_min", fmt::format("{}", plan.length_min)),

@@ -11,7 +11,6 @@
 #include "holdfast/host/text.hpp"
 #include "holdfast/io/beside_one.hpp"
 #include "holdfast/io/order_certificate.hpp"
-#include "holdfast/io/report_head.hpp"
 #include "json/json_text.hpp"
 
 namespace holdfast::io {
@@ -66,7 +65,8 @@ std::string help_words(const OrderReport& report) {
     return "";
   }
   if (!report.help) {
-    return "  help        no single support and no few temporary modules found that would do\n";
+    return "  help        no single support and no few temporary modules found that would "
+           "suffice\n";
   }
   const bool is_support = !report.help->supports.empty();
   return fmt::format("  help        {}: {}\n",
@@ -148,7 +148,9 @@ std::string order_json(const OrderReport& report) {
     certificate = write_order_certificate(report.target, *report.result.certificate);
     certificate.pop_back();
   }
-  Items items = report_head("order");
+  Items items = report_head({.command = "order",
+                             .origin = report.origin,
+                             .module_count = report.task.target.existing.size()});
   const Items found = {member("result", json_text(std::string(name(order.outcome)))),
                        member("steps", fmt::format("{}", order.steps.size())),
                        member("states", fmt::format("{}", order.state_count)),

@@ -5,7 +5,6 @@
 
 #include "connection_list.hpp"
 #include "holdfast/io/report.hpp"
-#include "holdfast/io/report_head.hpp"
 #include "holdfast/verdict/connection_law.hpp"
 #include "ordered_blocks.hpp"
 #include "report/limit_report.hpp"
@@ -263,12 +262,6 @@ class Writer {
   void write_head() {
     const model::Robot& robot = *entry_.robot;
     const verdict::Assessment& assessment = *entry_.assessment;
-    write_report_head(json_, entry_.command);
-    json_.member("name", entry_.name);
-    json_.member("verdict", verdict::name(assessment.verdict));
-    write_reasons();
-    json_.key("modules");
-    json_.begin_object();
     const WholeRobot whole =
         entry_.whole != nullptr
             ? *entry_.whole
@@ -277,6 +270,14 @@ class Writer {
                          .facet_count = robot.ground_count(),
                          .fixed_count = robot.fixed_count(),
                          .broken = {}};
+    write_report_head(json_, {.command = entry_.command,
+                              .origin = entry_.origin,
+                              .module_count = whole.existing_count + whole.planned_count});
+    json_.member("name", entry_.name);
+    json_.member("verdict", verdict::name(assessment.verdict));
+    write_reasons();
+    json_.key("modules");
+    json_.begin_object();
     json_.member("existing", whole.existing_count);
     json_.member("planned", whole.planned_count);
     json_.member("on_ground", whole.facet_count);
@@ -410,12 +411,12 @@ std::string write_report_json(const ReportEntry& entry) {
   return std::move(out).str();
 }
 
-std::string write_error_json(const base::Error& error, std::string_view name) {
+std::string write_error_json(const base::Error& error, const ReportOrigin& origin) {
   std::string text;
   JsonStream json(text);
   json.begin_object();
-  write_report_head(json, "check");
-  json.member("name", name);
+  write_report_head(json, {.command = "check", .origin = origin});
+  json.member("name", std::string_view(origin.file));
   json.member("error", std::string_view(error.message));
   json.member("where", std::string_view(error.where));
   json.end_object();

@@ -37,8 +37,8 @@ std::string rigid_text(const limit::RigidStability& rigid) {
     text += fmt::format(", until gravity tilts by {:.1f} degrees", *rigid.tilt_margin_deg);
   }
   if (rigid.friction_needed && *rigid.friction_needed > 0) {
-    text += fmt::format(", with friction of {:.3g} or more at the best pressing",
-                        *rigid.friction_needed);
+    text +=
+        fmt::format(", it needs a friction coefficient of at least {:.3g}", *rigid.friction_needed);
   }
   return text;
 }
@@ -106,7 +106,7 @@ void write_solver(Out out, const verdict::Assessment& assessment, double seconds
   const solver::Equilibrium& equilibrium = assessment.equilibrium;
   const std::string time = time_text(seconds);
   if (equilibrium.outcome == solver::Outcome::kNotSought) {
-    fmt::format_to(out, "  loads       not sought, as the robot topples; {}\n", time);
+    fmt::format_to(out, "  loads       not computed, as the robot topples; {}\n", time);
     return;
   }
   fmt::format_to(out, "  contact     {}; {}{} in {}\n", verdict::name(assessment.contact_model),

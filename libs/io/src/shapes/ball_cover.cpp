@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shapes/isometric.hpp"
-
 namespace holdfast::io {
 namespace {
 
@@ -16,7 +14,7 @@ constexpr double kReach = 2.35;  // Pitches.
 
 }  // namespace
 
-BallCover::BallCover(const base::Lattice& lattice) : lattice_(lattice) {
+BallCover::BallCover(const base::Lattice& lattice, const ViewAxes& axes) : lattice_(lattice) {
   constexpr double kSize = kBallRadius * 2 / kSquaresAcross;
   const auto middle = [](std::size_t i) {
     return (static_cast<double>(i) + 0.5) * kSize - kBallRadius;
@@ -39,8 +37,8 @@ BallCover::BallCover(const base::Lattice& lattice) : lattice_(lattice) {
     for (std::int32_t j = -kSteps; j <= kSteps; ++j) {
       for (std::int32_t k = -kSteps; k <= kSteps; ++k) {
         const Place way = base::place_of(lattice, {i, j, k});
-        const ScreenPoint at = seen_at(way);
-        if (dot(way, way) > kReach * kReach || nearness(way) < 1e-9 ||
+        const ScreenPoint at = axes.seen_at(way);
+        if (dot(way, way) > kReach * kReach || axes.nearness(way) < 1e-9 ||
             length(at) >= 2 * kBallRadius) {
           continue;
         }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "holdfast/model/cell_index.hpp"
-#include "shapes/module_shape.hpp"
+#include "shapes/view_axes.hpp"
 
 namespace holdfast::io {
 
@@ -17,7 +17,7 @@ namespace holdfast::io {
 /// found.
 class BallCover {
  public:
-  explicit BallCover(const base::Lattice& lattice);
+  BallCover(const base::Lattice& lattice, const ViewAxes& axes);
 
   /// Whether balls of `cells` hide the ball in `cell`.
   bool hides(const model::CellIndex& cells, const base::Cell& cell) const;

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "shapes/ball_cover.hpp"
-#include "shapes/isometric.hpp"
 
 namespace holdfast::io {
 namespace {
@@ -21,12 +20,13 @@ constexpr int kDiscCorners = 24;
 /// edge-on.
 constexpr double kEdgeOn = 1e-9;
 
-std::vector<SeenFace> seen(const std::vector<ShapeFace>& faces) {
+std::vector<SeenFace> seen(const std::vector<ShapeFace>& faces, const ViewAxes& axes) {
   std::vector<SeenFace> all;
   for (const ShapeFace& face : faces) {
-    if (nearness(face.normal) > kEdgeOn) {
+    if (axes.nearness(face.normal) > kEdgeOn) {
       SeenFace seen_face = {.normal = face.normal, .corners = {}, .direction = face.direction};
-      std::ranges::transform(face.corners, std::back_inserter(seen_face.corners), seen_at);
+      std::ranges::transform(face.corners, std::back_inserter(seen_face.corners),
+                             [&](const Place& corner) { return axes.seen_at(corner); });
       all.push_back(std::move(seen_face));
     }
   }
@@ -34,42 +34,52 @@ std::vector<SeenFace> seen(const std::vector<ShapeFace>& faces) {
 }
 
 /// The corner `i` of the circle around a disc's face that is at y.
-Place disc_corner(int i, double y) {
+Place disc_corner(double i, double y) {
   const double angle = 2 * std::numbers::pi * i / kDiscCorners;
   return {0.5 * std::cos(angle), y, 0.5 * std::sin(angle)};
 }
 
-/// A disc is its rim, all of it that is seen, and its flat front. The rim runs from one of the
-/// front's two outermost points, at right angles to the disc's axis on the picture, to the other
-/// and back along the back face.
-std::vector<SeenFace> disc_faces() {
-  constexpr double kHalf = kDiscDepth / 2;
-  SeenFace front = {.normal = {0, -1, 0}, .corners = {}, .direction = {}};
-  for (int i = 0; i < kDiscCorners; ++i) {
-    front.corners.push_back(seen_at(disc_corner(i, -kHalf)));
+/// A disc is its rim, all of it that is seen, and the flat side that is. The rim runs from one of
+/// that side's two outermost points, at right angles to the disc's axis on the picture, to the
+/// other and back along the far side.
+std::vector<SeenFace> disc_faces(const ViewAxes& axes) {
+  const double side = axes.eye[1] > kEdgeOn ? 1 : -1;
+  const double near = side * kDiscDepth / 2;
+  std::vector<SeenFace> faces;
+  if (std::abs(axes.eye[0]) + std::abs(axes.eye[2]) > kEdgeOn) {
+    SeenFace rim = {.normal = {1, 0, 0}, .corners = {}, .direction = {}};
+    constexpr int kHalf = kDiscCorners / 2;
+    // The eye sees the rim a quarter of the circle on either side of its own direction.
+    const double middle = std::atan2(axes.eye[2], axes.eye[0]) * kHalf / std::numbers::pi;
+    for (int i = 0; i <= kHalf; ++i) {
+      rim.corners.push_back(axes.seen_at(disc_corner(middle + i - kHalf / 2, near)));
+    }
+    for (int i = kHalf; i >= 0; --i) {
+      rim.corners.push_back(axes.seen_at(disc_corner(middle + i - kHalf / 2, -near)));
+    }
+    faces.push_back(std::move(rim));
   }
-  // The eye sees the rim where x + z > 0: from -45 to 135 degrees.
-  constexpr int kFirst = -kDiscCorners / 8;
-  constexpr int kLast = kFirst + kDiscCorners / 2;
-  SeenFace rim = {.normal = {1, 0, 0}, .corners = {}, .direction = {}};
-  for (int i = kFirst; i <= kLast; ++i) {
-    rim.corners.push_back(seen_at(disc_corner(i, -kHalf)));
+  if (std::abs(axes.eye[1]) > kEdgeOn) {
+    SeenFace front = {.normal = {0, side, 0}, .corners = {}, .direction = {}};
+    for (int i = 0; i < kDiscCorners; ++i) {
+      front.corners.push_back(axes.seen_at(disc_corner(i, near)));
+    }
+    faces.push_back(std::move(front));
   }
-  for (int i = kLast; i >= kFirst; --i) {
-    rim.corners.push_back(seen_at(disc_corner(i, kHalf)));
-  }
-  return {rim, front};
+  return faces;
 }
 
 /// The nearest and the furthest module that is seen near each place of the picture.
 class Depths {
  public:
+  explicit Depths(const ViewAxes& axes) : axes_(axes) {}
+
   void add(const Place& place) {
     for_squares(place, [&](std::int64_t key) {
-      auto [found, is_new] = depths_.try_emplace(key, nearness(place), nearness(place));
+      auto [found, is_new] = depths_.try_emplace(key, axes_.nearness(place), axes_.nearness(place));
       auto& [furthest, nearest] = found->second;
-      furthest = std::min(furthest, nearness(place));
-      nearest = std::max(nearest, nearness(place));
+      furthest = std::min(furthest, axes_.nearness(place));
+      nearest = std::max(nearest, axes_.nearness(place));
     });
   }
 
@@ -78,8 +88,8 @@ class Depths {
     bool is_in_front = true;
     for_squares(place, [&](std::int64_t key) {
       if (const auto found = depths_.find(key); found != depths_.end()) {
-        is_behind = is_behind && nearness(place) <= found->second.first;
-        is_in_front = is_in_front && nearness(place) >= found->second.second;
+        is_behind = is_behind && axes_.nearness(place) <= found->second.first;
+        is_in_front = is_in_front && axes_.nearness(place) >= found->second.second;
       }
     });
     return is_behind ? Layer::kBehind : is_in_front ? Layer::kInFront : Layer::kAmong;
@@ -88,8 +98,8 @@ class Depths {
  private:
   /// Squares of an edge's length that a body may cover: none is further seen from its node.
   template <class Use>
-  static void for_squares(const Place& place, Use use) {
-    const ScreenPoint at = seen_at(place);
+  void for_squares(const Place& place, Use use) const {
+    const ScreenPoint at = axes_.seen_at(place);
     for (double y = std::floor(at.y - 1); y <= at.y + 1; ++y) {
       for (double x = std::floor(at.x - 1); x <= at.x + 1; ++x) {
         use(static_cast<std::int64_t>(y) * kRowLength + static_cast<std::int64_t>(x));
@@ -99,6 +109,7 @@ class Depths {
 
   static constexpr std::int64_t kRowLength = std::int64_t{1} << 32U;
 
+  ViewAxes axes_;
   std::unordered_map<std::int64_t, std::pair<double, double>> depths_;  ///< Only ever asked.
 };
 
@@ -120,28 +131,29 @@ std::uint16_t bit(std::size_t face) { return static_cast<std::uint16_t>(1U << fa
 
 }  // namespace
 
-std::vector<SeenFace> seen_faces(const base::Lattice& lattice) {
+std::vector<SeenFace> seen_faces(const base::Lattice& lattice, const ViewAxes& axes) {
   switch (body_of(lattice)) {
     case Body::kBall:
       return {};
     case Body::kDisc:
-      return disc_faces();
+      return disc_faces(axes);
     case Body::kCell:
       break;
   }
-  return seen_cell_faces(lattice);
+  return seen_cell_faces(lattice, axes);
 }
 
-std::vector<SeenFace> seen_cell_faces(const base::Lattice& lattice) {
-  return seen(cell_faces(lattice));
+std::vector<SeenFace> seen_cell_faces(const base::Lattice& lattice, const ViewAxes& axes) {
+  return seen(cell_faces(lattice), axes);
 }
 
-BodyView::BodyView(const model::Robot& robot, NearObstacles obstacles)
+BodyView::BodyView(const model::Robot& robot, NearObstacles obstacles, const ViewAxes& axes)
     : robot_(robot),
       obstacles_(std::move(obstacles)),
+      axes_(axes),
       body_(body_of(robot.lattice())),
-      module_faces_(seen_faces(robot.lattice())),
-      obstacle_faces_(seen_cell_faces(robot.lattice())) {
+      module_faces_(seen_faces(robot.lattice(), axes)),
+      obstacle_faces_(seen_cell_faces(robot.lattice(), axes)) {
   add_modules();
   add_obstacles();
   sort_obstacles_into_layers();
@@ -172,11 +184,11 @@ std::uint16_t BodyView::faces_hidden_by_neighbours(std::size_t module) const {
 void BodyView::add_modules() {
   const auto add = [&](std::size_t module, std::uint16_t hidden_faces) {
     BodyItem item = {.index = static_cast<std::uint32_t>(module), .hidden_faces = hidden_faces};
-    item.nearness = nearness(place_of(item));
+    item.nearness = axes_.nearness(place_of(item));
     items_.push_back(item);
   };
   if (body_ == Body::kBall) {
-    const BallCover cover(robot_.lattice());
+    const BallCover cover(robot_.lattice(), axes_);
     const model::CellIndex existing = existing_cells(robot_);
     for (std::size_t i = 0; i < robot_.modules().size(); ++i) {
       if (!cover.hides(existing, robot_.modules()[i].cell)) {
@@ -209,7 +221,7 @@ void BodyView::add_obstacles() {
       }
     }
     if (item.hidden_faces != all_faces(obstacle_faces_)) {
-      item.nearness = nearness(place_of(item));
+      item.nearness = axes_.nearness(place_of(item));
       items_.push_back(item);
     }
   }
@@ -219,7 +231,7 @@ void BodyView::sort_obstacles_into_layers() {
   if (obstacles_.cells.empty()) {
     return;
   }
-  Depths depths;
+  Depths depths(axes_);
   for (const BodyItem& item : items_) {
     if (!item.is_obstacle) {
       depths.add(place_of(item));

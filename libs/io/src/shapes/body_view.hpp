@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "obstacle_cells.hpp"
-#include "shapes/module_shape.hpp"
-#include "shapes/svg_text.hpp"
+#include "shapes/view_axes.hpp"
 
 /// A robot as bodies that are drawn one over the other, from back to front: every lattice, and
 /// cubes among obstacles. Exact, by module_shape.hpp; costs a polygon or more for each body that
@@ -24,10 +23,10 @@ struct SeenFace {
 
 /// The faces that the eye sees of a body without neighbours; none of a ball, which is a circle of
 /// kBallRadius.
-std::vector<SeenFace> seen_faces(const base::Lattice& lattice);
+std::vector<SeenFace> seen_faces(const base::Lattice& lattice, const ViewAxes& axes);
 
 /// The visible faces of an obstacle's cell without neighbours.
-std::vector<SeenFace> seen_cell_faces(const base::Lattice& lattice);
+std::vector<SeenFace> seen_cell_faces(const base::Lattice& lattice, const ViewAxes& axes);
 
 /// Obstacles are glass. Those that hide nothing of the robot, and those of which it hides nothing,
 /// are drawn as one pane each; only those among its modules come in between.
@@ -45,7 +44,7 @@ struct BodyItem {
 class BodyView {
  public:
   /// Keeps a reference to the robot.
-  BodyView(const model::Robot& robot, NearObstacles obstacles);
+  BodyView(const model::Robot& robot, NearObstacles obstacles, const ViewAxes& axes = {});
 
   const NearObstacles& obstacles() const { return obstacles_; }
 
@@ -73,6 +72,7 @@ class BodyView {
 
   const model::Robot& robot_;
   NearObstacles obstacles_;
+  ViewAxes axes_;
   Body body_;
   std::vector<SeenFace> module_faces_;
   std::vector<SeenFace> obstacle_faces_;

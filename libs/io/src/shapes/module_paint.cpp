@@ -33,6 +33,8 @@ Color mix(Color a, Color b, int share, int whole) {
           .blue = channel(a.blue, b.blue)};
 }
 
+Color grey(int value) { return {.red = value, .green = value, .blue = value}; }
+
 /// The largest ratio of every module's connections; NaN wins, for then it is not known.
 void add_ratio(ModulePaint& paint, double ratio) {
   if (!paint.is_loaded || !(ratio <= paint.worst_ratio)) {
@@ -88,7 +90,10 @@ std::vector<ModulePaint> paint_modules(const model::Robot& robot,
   return paints;
 }
 
-Color load_color(int percent) {
+Color load_color(int percent, Palette palette) {
+  if (palette == Palette::kGrey) {
+    return mix(grey(230), grey(120), percent, 100);
+  }
   const Stop* next =
       std::ranges::find_if(kStops, [&](const Stop& stop) { return stop.percent >= percent; });
   if (next == std::begin(kStops)) {
@@ -98,20 +103,21 @@ Color load_color(int percent) {
   return mix(last.color, next->color, percent - last.percent, next->percent - last.percent);
 }
 
-Color color_of(const ModulePaint& paint) {
+Color color_of(const ModulePaint& paint, Palette palette) {
+  const bool is_grey = palette == Palette::kGrey;
   switch (paint.meaning) {
     case Meaning::kLoad:
-      return load_color(paint.percent);
+      return load_color(paint.percent, palette);
     case Meaning::kBroken:
-      return kBrokenColor;
+      return is_grey ? grey(30) : kBrokenColor;
     case Meaning::kFixed:
-      return kFixedColor;
+      return is_grey ? grey(80) : kFixedColor;
     case Meaning::kUnstable:
-      return kUnstableColor;
+      return is_grey ? grey(150) : kUnstableColor;
     case Meaning::kUnknown:
       break;
   }
-  return kUnknownColor;
+  return is_grey ? grey(245) : kUnknownColor;
 }
 
 Color lightened(Color color, int percent) { return mix(color, kWhite, percent, 100); }

@@ -36,9 +36,12 @@ bool has_loads(const model::Robot& robot, const verdict::Assessment& assessment)
 std::vector<ModulePaint> paint_modules(const model::Robot& robot,
                                        const verdict::Assessment& assessment);
 
+/// Colours, or greys that tell loads and meanings apart: the darker the more.
+enum class Palette : std::uint8_t { kColour, kGrey };
+
 /// The colour of a load, computed in integers, so that it is the same on every machine.
-Color load_color(int percent);
-Color color_of(const ModulePaint& paint);
+Color load_color(int percent, Palette palette);
+Color color_of(const ModulePaint& paint, Palette palette);
 
 /// Mixes a colour with so many percent of white.
 Color lightened(Color color, int percent);

@@ -197,6 +197,34 @@ std::string escape(std::string_view text) {
   return escaped;
 }
 
+std::string size_attributes(const FigureOptions& figure, double width, double height) {
+  const double wide = figure.size ? figure.size->width : width;
+  const double high = figure.size ? figure.size->height.value_or(height * wide / width) : height;
+  return fmt::format("width=\"{}\" height=\"{}\"", number(wide), number(high));
+}
+
+std::string finished(std::string svg, const FigureOptions& figure) {
+  if (!figure.is_grey) {
+    return svg;
+  }
+  // Quotes stand around attributes alone: escape() writes others as &quot;.
+  constexpr std::string_view kBegin = "=\"#";
+  for (std::size_t at = svg.find(kBegin); at != std::string::npos; at = svg.find(kBegin, at)) {
+    at += kBegin.size();
+    const std::size_t size = svg.find('"', at) - at;
+    if (size == 6) {
+      const unsigned long color = std::stoul(svg.substr(at, size), nullptr, 16);
+      const unsigned long red = color >> 16U;
+      const unsigned long green = color >> 8U & 0xffU;
+      const unsigned long blue = color & 0xffU;
+      // The weights of Rec. 601, in integers.
+      const unsigned long grey = (299 * red + 587 * green + 114 * blue + 500) / 1000;
+      svg.replace(at, size, fmt::format("{0:02x}{0:02x}{0:02x}", grey));
+    }
+  }
+  return svg;
+}
+
 double text_width(std::string_view text, double font_size, bool is_bold) {
   double width = 0;
   while (!text.empty()) {

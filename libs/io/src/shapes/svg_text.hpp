@@ -7,6 +7,8 @@
 #include <string_view>
 #include <utility>
 
+#include "holdfast/io/figure.hpp"
+
 /// Numbers, paths and words as an SVG wants them. All coordinates are rounded once, to hundredths
 /// of a pixel, and from there on are integers: the same text with every compiler.
 namespace holdfast::io {
@@ -83,6 +85,12 @@ class PathElements {
 /// Escapes text for elements and attributes; bytes that are not UTF-8, and characters that XML does
 /// not allow, become U+FFFD.
 std::string escape(std::string_view text);
+
+/// The attributes "width" and "height" of a picture that is so large by itself.
+std::string size_attributes(const FigureOptions& figure, double width, double height);
+
+/// The picture with all colours as their greys, if that is asked for.
+std::string finished(std::string svg, const FigureOptions& figure);
 
 /// A guess for a common sans-serif face, rather too wide than too narrow.
 double text_width(std::string_view text, double font_size, bool is_bold = false);

@@ -56,7 +56,7 @@ void read_own(XmlReading& reading, const pugi::xml_node& node, OwnParameters own
   if (mass) {
     own.mass_kg = reading.number(node, mass);
     if (!(*own.mass_kg > 0)) {
-      reading.fail(node, fmt::format("{} of <{}> is {}, allowed is a positive number",
+      reading.fail(node, fmt::format("{} of <{}> is {}, expected a positive number",
                                      kOwnMassAttribute, node.name(), excerpt(mass.value())));
     }
   }
@@ -107,8 +107,8 @@ void read_row(XmlReading& reading, const pugi::xml_node& row, std::int32_t& plan
   const char* const text = reading.required(row, "values");
   const std::string_view values = text == nullptr ? "" : text;
   if (values.size() > base::kCoordinateMax + 1U) {
-    reading.fail(row, fmt::format("values of <{}> has {} characters, allowed are {}", row.name(),
-                                  values.size(), base::kCoordinateMax + 1));
+    reading.fail(row, fmt::format("values of <{}> has {} characters, expected at most {}",
+                                  row.name(), values.size(), base::kCoordinateMax + 1));
   }
   const auto count = static_cast<std::size_t>(std::ranges::count(values, '1'));
   if (!reading.take_room(count, [&] { return reading.line(row); })) {
@@ -137,7 +137,7 @@ Lengths read_lengths(XmlReading& reading, const pugi::xml_node& node, const char
   }
   const auto lengths = parse_triple<double>(attribute.value());
   if (!lengths) {
-    reading.fail(node, fmt::format("{} of <{}> is {}, allowed are three numbers, such as 40,40,41",
+    reading.fail(node, fmt::format("{} of <{}> is {}, expected three numbers, such as 40,40,41",
                                    name, node.name(), excerpt(attribute.value())));
   }
   return lengths.value_or(fallback);
@@ -221,7 +221,7 @@ BoxRanges read_mm_ranges(XmlReading& reading, const pugi::xml_node& box, const B
     return {};
   }
   if (std::ranges::min(pitch) <= 0) {
-    reading.fail(box.parent(), fmt::format("blockSize of <blockList> is '{},{},{}', allowed are "
+    reading.fail(box.parent(), fmt::format("blockSize of <blockList> is '{},{},{}', expected "
                                            "lengths above 0",
                                            pitch[0], pitch[1], pitch[2]));
     return {};

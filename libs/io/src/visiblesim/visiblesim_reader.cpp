@@ -25,7 +25,7 @@ bool is_free(std::string_view /*name*/) { return false; }
 pugi::xml_node only_child(XmlReading& reading, const pugi::xml_node& parent, const char* name) {
   const pugi::xml_node child = parent.child(name);
   if (const pugi::xml_node second = child.next_sibling(name)) {
-    reading.fail(second, fmt::format("a second <{}>, allowed is one", name));
+    reading.fail(second, fmt::format("a second <{}>, expected one", name));
   }
   return child;
 }
@@ -196,7 +196,7 @@ void read_world(XmlReading& reading, const pugi::xml_node& world, const ReadOpti
 void expect_nothing_beside(XmlReading& reading, const pugi::xml_node& tree) {
   for (const pugi::xml_node& child : tree.children()) {
     if (is_one_of(child.name(), {"parameters", "world"})) {
-      reading.fail(child, fmt::format("the element <{}> is beside <{}>; allowed is one within it",
+      reading.fail(child, fmt::format("the element <{}> is beside <{}>; expected one within it",
                                       child.name(), kRootElement));
     } else if (std::string_view(child.name()) != kRootElement) {
       reading.warn_of_unknown_child(child, kRootElements);
@@ -219,7 +219,7 @@ void expect_possible_numbers(XmlReading& reading, const pugi::xml_node& paramete
     const std::string name(is_simulated ? parameter.visiblesim : parameter.key);
     const bool is_said = static_cast<bool>(node.attribute(name.c_str()));
     reading.fail(is_said ? node : parameters,
-                 fmt::format("{} of <{}>{} is {}, allowed is {} to {}", name, node.name(),
+                 fmt::format("{} of <{}>{} is {}, expected {} to {}", name, node.name(),
                              is_said ? "" : ", which follows from globalL,", value,
                              parameter.lowest, parameter.highest));
   }

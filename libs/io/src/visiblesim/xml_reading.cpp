@@ -60,7 +60,7 @@ class ShapeCheck {
       }
       if (unread_at_ < text_.size()) {
         return syntax_error(text_, unread_at_,
-                            fmt::format("the entity {} is unknown, allowed are &lt; &gt; &amp; "
+                            fmt::format("the entity {} is unknown, expected &lt; &gt; &amp; "
                                         "&quot; &apos; and numbers of characters but 0",
                                         entity_of(text_.substr(unread_at_))));
       }
@@ -239,7 +239,7 @@ Attributes XmlReading::attributes(const pugi::xml_node& node,
     const std::string_view name = attribute.name();
     if (find_attribute(all, name) != nullptr) {
       fail(node, fmt::format("the attribute {} of {} is there twice, whatever the case of its "
-                             "letters; allowed is once",
+                             "letters; expected once",
                              excerpt(name), excerpt(node.name())));
     }
     if (all.size() == kAttributeCountMax) {
@@ -278,7 +278,7 @@ const char* XmlReading::required(const pugi::xml_node& node, const char* name) {
 double XmlReading::number(const pugi::xml_node& node, const pugi::xml_attribute& attribute) {
   const auto number = parse_number<double>(attribute.value());
   if (!number) {
-    fail(node, fmt::format("{} of <{}> is {}, allowed is a finite number", attribute.name(),
+    fail(node, fmt::format("{} of <{}> is {}, expected a finite number", attribute.name(),
                            node.name(), excerpt(attribute.value())));
   }
   return number.value_or(0);
@@ -288,9 +288,8 @@ std::int32_t XmlReading::integer(const pugi::xml_node& node, const pugi::xml_att
                                  IntegerRange range) {
   const auto number = parse_number<double>(attribute.value());
   if (!number || !range.contains(*number) || *number != std::trunc(*number)) {
-    fail(node,
-         fmt::format("{} of <{}> is {}, allowed is an integer from {} to {}", attribute.name(),
-                     node.name(), excerpt(attribute.value()), range.lowest, range.highest));
+    fail(node, fmt::format("{} of <{}> is {}, expected an integer from {} to {}", attribute.name(),
+                           node.name(), excerpt(attribute.value()), range.lowest, range.highest));
     return 0;
   }
   return static_cast<std::int32_t>(*number);
@@ -302,7 +301,7 @@ std::array<std::int32_t, 3> XmlReading::triple(const pugi::xml_node& node, const
   const auto triple = text == nullptr ? std::nullopt : parse_triple<std::int32_t>(text);
   if (text != nullptr &&
       (!triple || !std::ranges::all_of(*triple, [&](auto n) { return range.contains(n); }))) {
-    fail(node, fmt::format("{} of <{}> is {}, allowed are three integers from {} to {}, such as "
+    fail(node, fmt::format("{} of <{}> is {}, expected three integers from {} to {}, such as "
                            "1,2,3",
                            name, node.name(), excerpt(text), range.lowest, range.highest));
   }
@@ -330,7 +329,7 @@ void XmlReading::take_back_shift(const pugi::xml_node& own) {
     cell = {cell.x - shift_.x, cell.y - shift_.y, cell.z - shift_.z};
     if (!kCoordinateRange.contains(std::min({cell.x, cell.y, cell.z}))) {
       fail(own,
-           fmt::format("without the shift a cell is ({},{},{}), allowed are coordinates from "
+           fmt::format("without the shift a cell is ({},{},{}), expected coordinates from "
                        "{} to {}",
                        cell.x, cell.y, cell.z, kCoordinateRange.lowest, kCoordinateRange.highest));
     }

@@ -30,7 +30,7 @@ std::optional<base::Error> find_robot_fault(const MoveTask& task, const model::R
                                             const std::string& which) {
   if (!spec.planned.empty()) {
     return base::bad_input(
-        fmt::format("{} has planned modules; allowed are robots as they stand", which));
+        fmt::format("{} has planned modules; expected robots as they stand", which));
   }
   if (!spec.released.empty()) {
     return base::bad_input(

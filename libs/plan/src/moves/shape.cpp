@@ -66,12 +66,12 @@ std::optional<base::Error> find_fault(const RobotState& start, const RobotState&
       differences_of_surroundings(start.surroundings(), target.surroundings());
   if (!different.empty()) {
     return bad_pair(
-        fmt::format("both robots differ in {}; allowed are two shapes of one robot where it stands",
+        fmt::format("both robots differ in {}; expected two shapes of one robot where it stands",
                     fmt::join(different, ", ")));
   }
   if (start.module_count() != target.module_count()) {
     return bad_pair(
-        fmt::format("the robot has {} and its target {}; allowed are shapes of the same modules",
+        fmt::format("the robot has {} and its target {}; expected shapes of the same modules",
                     host::counted(start.module_count(), "module"), target.module_count()));
   }
   for (const auto& [cell, alike] : from.fixed) {
@@ -88,7 +88,7 @@ std::optional<base::Error> find_fault(const RobotState& start, const RobotState&
       !std::ranges::equal(from.cells, to.cells, {}, count, count)) {
     return bad_pair(
         "the modules of both robots differ in what is fixed, or in kinds, masses or loads; "
-        "allowed are shapes of the same modules");
+        "expected shapes of the same modules");
   }
   return std::nullopt;
 }

@@ -194,10 +194,11 @@ base::Result<std::vector<Scene>> shift_scenes(const RobotState& before, const mo
     return std::vector<Scene>{std::move(scene)};
   }
   if (scene_count(transition) > kSceneMax) {
-    return fault_in(Stage::kShift,
-                    fmt::format("groups that move at once can hang on their carriers in more than "
-                                "{} ways; name the carriers, or make several steps of it",
-                                kSceneMax));
+    return fault_in(
+        Stage::kShift,
+        fmt::format("groups that move at once can be connected to their carriers in more than "
+                    "{} ways; name the carriers, or make several steps of it",
+                    kSceneMax));
   }
   std::vector<Scene> scenes;
   for (std::size_t waypoint = 0; waypoint < transition.waypoint_count(); ++waypoint) {

@@ -33,7 +33,7 @@ Fault find_release_fault(const RobotState& robot, const model::Step& step) {
   for (const model::CellPair& pair : step.release) {
     if (!robot.are_connected(pair[0], pair[1]) || !seen.insert(ordered(pair)).second) {
       return fmt::format(
-          "{} cannot be released, as it is not connected; allowed are pairs of connected modules, "
+          "{} cannot be released, as it is not connected; expected pairs of connected modules, "
           "each once",
           pair_text(pair));
     }
@@ -153,7 +153,7 @@ Fault find_arrival_fault(const RobotState& robot, const model::Step& step,
         (robot.find(cell) != RobotState::kNone && !gone.contains(cell)) || is_seen(taken, cell);
     const bool is_obstacle = robot.obstacles().find(cell) != model::CellIndex::kNone;
     if (is_occupied || is_obstacle) {
-      return fmt::format("no module can be attached at {}: {} there, allowed are free cells",
+      return fmt::format("no module can be attached at {}: {} there, expected free cells",
                          text(cell), is_obstacle ? "an obstacle is" : "a module is");
     }
   }
@@ -167,7 +167,7 @@ Fault find_arrival_fault(const RobotState& robot, const model::Step& step,
     if (!is_released || gone.contains(pair[0]) || gone.contains(pair[1]) ||
         !seen.insert(ordered(pair)).second) {
       return fmt::format(
-          "{} cannot be connected; allowed are neighbours that were released before, each once",
+          "{} cannot be connected; expected neighbours that were released before, each once",
           pair_text(pair));
     }
   }

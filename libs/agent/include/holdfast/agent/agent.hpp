@@ -6,15 +6,15 @@
 #include <cstdint>
 #include <span>
 
-#include "holdfast/agent/announcements.hpp"
 #include "holdfast/agent/colour.hpp"
-#include "holdfast/agent/conductor.hpp"
-#include "holdfast/agent/free_faces.hpp"
-#include "holdfast/agent/rounds.hpp"
+#include "holdfast/agent/conductor/conductor.hpp"
+#include "holdfast/agent/equilibrium/workspace.hpp"
+#include "holdfast/agent/free_faces/free_faces.hpp"
+#include "holdfast/agent/groups/announcements.hpp"
+#include "holdfast/agent/methods/sweep.hpp"
 #include "holdfast/agent/setup.hpp"
-#include "holdfast/agent/sweep.hpp"
-#include "holdfast/agent/watch.hpp"
-#include "holdfast/agent/workspace.hpp"
+#include "holdfast/agent/tree/rounds.hpp"
+#include "holdfast/agent/tree/watch.hpp"
 
 /// The program that every module of the robot runs. One object per module, one function: step().
 ///
@@ -170,7 +170,7 @@ class Agent {
   /// verdict, and to greet neighbours that are silent?
   bool is_only_watching(Time wake_at) const;
 
-  /// For how long a verdict stands that the root does not say again. W being the time that the
+  /// How long a verdict stands that the root does not say again. W being the time that the
   /// waves of the last round took here: ping_after + lost_after(timing) + 2 W.
   Time watch_time() const { return watch_.verdict_time(clock_.timing); }
 

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "holdfast/agent/order.hpp"
+#include "holdfast/agent/messages/order.hpp"
 
 namespace holdfast::agent {
 
@@ -18,9 +18,10 @@ struct Colour {
   friend constexpr bool operator==(const Colour&, const Colour&) = default;
 };
 
-/// As in Fig. 6 of [Piranda 2021]: from green to orange by the largest load ratio of the module's
-/// own connections, blinking red if one of them breaks, blue if it is fixed; if the robot topples,
-/// the root blinks in purple and the others are dark. Our own: white while undecided, dark before.
+/// The colour of Fig. 6 of [Piranda 2021]: from green to orange by the largest load ratio of the
+/// module's own connections, blinking red if one of them breaks, blue if it is fixed; if the robot
+/// topples, the root blinks in purple and the others are dark. Our own: white while undecided, dark
+/// before.
 Colour colour_of(Verdict verdict, float own_load_ratio, bool is_fixed, bool is_root);
 
 }  // namespace holdfast::agent

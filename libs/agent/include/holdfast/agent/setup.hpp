@@ -4,10 +4,11 @@
 
 #include <array>
 #include <cstdint>
+#include <type_traits>
 
-#include "holdfast/agent/lattice_beams.hpp"
-#include "holdfast/agent/lattices.hpp"
-#include "holdfast/agent/link.hpp"
+#include "holdfast/agent/algebra/lattice_beams.hpp"
+#include "holdfast/agent/cells/lattices.hpp"
+#include "holdfast/agent/wire/link.hpp"
 #include "holdfast/mechanics/beam.hpp"
 
 namespace holdfast::agent {
@@ -20,8 +21,9 @@ enum class Method : std::uint8_t {
                  ///< where that is lent kElimination takes them too, when nothing else settles.
 };
 
-/// What is known before the robot is built, the same for all its modules. N, mm, MPa.
-struct Setup {
+/// What is known of cubes before the robot is built, the same for all its modules. N, mm, MPa. In
+/// real modules it lies in flash (module/configuration.hpp).
+struct CubeSetup {
   mechanics::BeamSection<double> section;
   double facet_mm = 40;
   double weight_n = 0;  ///< Weight of one module.
@@ -35,9 +37,9 @@ struct Setup {
   /// kElimination means: or kPolynomial, if the robot has too many loops.
   Method method = Method::kElimination;
   /// Elimination and the polynomial alone, without rigid clusters and without further solutions:
-  /// for robots some of whose modules have no other method (src/methods.hpp).
+  /// for robots some of whose modules have no other method (features.hpp).
   bool only_one_sweep = false;
-  /// After a verdict the next one begins from what is kept, where only a plan has changed or a
+  /// The next verdict begins from what is kept, where only a plan has changed or a
   /// module has come; else, and without it, from nothing.
   bool keeps_answers = false;
   std::uint32_t iteration_count_max = 4'000'000;
@@ -46,16 +48,10 @@ struct Setup {
   // Derived by prepare().
   mechanics::BeamStiffness<double> beam;
   mechanics::BeamStiffness<float> beam_float;
+};
 
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-  static constexpr bool is_cubic() { return true; }
-
-  Beams<double> beams() const { return beam; }
-
-  Beams<float> beams_float() const { return beam_float; }
-#else
-  /// Known before, too, but at the end: what is above lies in the flash of real modules
-  /// (module/configuration.hpp).
+/// What is known besides of robots of all kinds.
+struct GeneralSetup {
   base::Lattice lattice = base::kCubic;
   /// Where loads alone say that the robot falls (feet.hpp): the axes of the plane of all supports.
   bool has_plane = false;
@@ -66,40 +62,68 @@ struct Setup {
   double ratio_per_n = 0;
   double ratio_per_nmm = 0;
   double ratio_per_energy_root = 0;
-  /// Such a bound makes 2 to the power of this more of the same forces than Eq. (17) would.
+  /// The bounds make 2 to the power of this more of the same forces than Eq. (17) would.
   std::uint8_t slack_bits = 0;
-  // Derived.
+
+  // Derived by prepare().
   mechanics::LatticeBeam<double> lattice_beam;
   mechanics::LatticeBeam<float> lattice_beam_float;
 
   bool is_cubic() const { return lattice_beam.is_cubic(); }
 
-  /// What joins modules, in all directions of the lattice.
-  Beams<double> beams() const { return {beam, is_cubic() ? nullptr : &lattice_beam}; }
-
-  Beams<float> beams_float() const {
-    return {beam_float, is_cubic() ? nullptr : &lattice_beam_float};
+  /// Is null if the beams are those of cubes.
+  const mechanics::LatticeBeam<double>* other_beam() const {
+    return is_cubic() ? nullptr : &lattice_beam;
   }
-#endif
+
+  const mechanics::LatticeBeam<float>* other_beam_float() const {
+    return is_cubic() ? nullptr : &lattice_beam_float;
+  }
+
+  void prepare(const mechanics::BeamSection<double>& section,
+               const mechanics::BeamSection<float>& single) {
+    lattice_beam = {section, lattice};
+    lattice_beam_float = {single, lattice};
+  }
+};
+
+/// What programs know instead that know nothing but cubes on a floor.
+struct FloorSetup {
+  static constexpr base::Lattice lattice = base::kCubic;
+  static constexpr bool has_plane = false;
+  static constexpr std::array<std::array<double, 3>, 2> plane_axes{};
+  static constexpr bool has_friction = false;
+  static constexpr double ratio_per_n = 0;
+  static constexpr double ratio_per_nmm = 0;
+  static constexpr double ratio_per_energy_root = 0;
+  static constexpr std::uint8_t slack_bits = 0;
+
+  static constexpr bool is_cubic() { return true; }
+
+  static constexpr const mechanics::LatticeBeam<double>* other_beam() { return nullptr; }
+
+  static constexpr const mechanics::LatticeBeam<float>* other_beam_float() { return nullptr; }
+
+  static void prepare(const mechanics::BeamSection<double>& /*section*/,
+                      const mechanics::BeamSection<float>& /*single*/) {}
+};
+
+/// All of it.
+struct Setup : CubeSetup, std::conditional_t<kIsGeneral, GeneralSetup, FloorSetup> {
+  /// What joins modules, in all directions of the lattice.
+  Beams<double> beams() const { return {beam, other_beam()}; }
+
+  Beams<float> beams_float() const { return {beam_float, other_beam_float()}; }
 };
 
 /// How many faces modules have.
-inline int face_count([[maybe_unused]] const Setup& setup) {
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-  return kOwnFaceCount;
-#else
-  return setup.lattice.direction_count;
-#endif
-}
+inline int face_count(const Setup& setup) { return setup.lattice.direction_count; }
 
 /// The strength of the connectors in a direction.
 inline double strength_n(const Setup& setup, base::Direction direction) {
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-  const bool is_vertical = base::is_vertical(direction);
-#else
-  const bool is_vertical =
-      base::connector_class(setup.lattice, direction) == base::ConnectorClass::kVertical;
-#endif
+  const bool is_vertical = kIsGeneral ? base::connector_class(setup.lattice, direction) ==
+                                            base::ConnectorClass::kVertical
+                                      : base::is_vertical(direction);
   return is_vertical ? setup.strength_vertical_n : setup.strength_lateral_n;
 }
 

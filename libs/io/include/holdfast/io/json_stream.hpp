@@ -21,6 +21,7 @@ class JsonStream {
  public:
   enum class Layout : std::uint8_t {
     kIndented,  ///< By two blanks, a line for every value.
+    kLine,      ///< In one line, with a blank behind every comma and colon.
     kCompact,   ///< Without blanks and line feeds.
   };
 

@@ -7,12 +7,14 @@
 
 #include "holdfast/base/result.hpp"
 #include "holdfast/io/document.hpp"
+#include "holdfast/io/report_head.hpp"
 #include "holdfast/plan/move_plan.hpp"
 
 /// Reports the result of a search for moves from one shape to another, for programs and for people.
 namespace holdfast::io {
 
 struct MoveReport {
+  ReportOrigin origin = {};
   Document start;
   plan::MoveTask task;
   plan::MovePlan plan = {};

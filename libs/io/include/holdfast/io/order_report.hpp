@@ -6,6 +6,7 @@
 #include <string>
 
 #include "holdfast/io/document.hpp"
+#include "holdfast/io/report_head.hpp"
 #include "holdfast/plan/order.hpp"
 #include "holdfast/plan/order_help.hpp"
 
@@ -13,6 +14,7 @@
 namespace holdfast::io {
 
 struct OrderReport {
+  ReportOrigin origin = {};
   Document target;
   plan::OrderTask task;
   plan::RobotOrder result = {};

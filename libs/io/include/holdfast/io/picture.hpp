@@ -8,20 +8,22 @@
 #include <string>
 #include <string_view>
 
+#include "holdfast/io/figure.hpp"
 #include "holdfast/io/write_options.hpp"
 #include "holdfast/verdict/assessment.hpp"
 
 namespace holdfast::io {
 
-/// An SVG of the robot in isometric view: every module coloured by its worst connection as in
-/// Fig. 6 of [Piranda 2021] (green to orange safe, red broken, purple unstable, blue fixed, planned
-/// ones dashed), the failing connection marked, the support polygon and the centre of mass, a
-/// legend. Modules look like those of their lattice: cubes, prisms, standing discs, balls. Near
-/// obstacles are drawn translucent; `obstacles` are those that the robot was made with. The facets
-/// that touch say what they do; payloads, and gravity that does not point straight down, are
-/// arrows. The text is self-contained; `title` is shown and escaped.
+/// An SVG of the robot, in isometric view unless another is asked for: every module coloured by its
+/// worst connection as in Fig. 6 of [Piranda 2021] (green to orange safe, red broken, purple
+/// unstable, blue fixed, planned ones dashed), the failing connection marked, the support polygon
+/// and the centre of mass, a legend. Modules look like those of their lattice: cubes, prisms,
+/// standing discs, balls. Near obstacles are drawn translucent; `obstacles` are those that the
+/// robot was made with. The facets that touch say what they do; payloads, and gravity that does not
+/// point straight down, are arrows. The text is self-contained; `title` is shown and escaped.
 std::string write_svg(const model::Robot& robot, const verdict::Assessment& assessment,
-                      std::string_view title, std::span<const model::Obstacle> obstacles = {});
+                      std::string_view title, std::span<const model::Obstacle> obstacles = {},
+                      const FigureOptions& figure = {});
 
 /// A place where a module may go, and what the robot becomes with one there.
 struct Ghost {
@@ -34,7 +36,8 @@ struct Ghost {
 /// them.
 std::string write_svg_with_ghosts(const model::Robot& robot, std::span<const Ghost> ghosts,
                                   const verdict::Assessment& assessment, std::string_view title,
-                                  std::span<const model::Obstacle> obstacles = {});
+                                  std::span<const model::Obstacle> obstacles = {},
+                                  const FigureOptions& figure = {});
 
 /// Writes a VTK XML unstructured grid (.vtu, compressed binary) for ParaView: one cell per module,
 /// in the shape of its lattice, with load ratio, displacement and ground force, one line per

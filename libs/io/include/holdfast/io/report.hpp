@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "holdfast/io/json_stream.hpp"
+#include "holdfast/io/report_head.hpp"
 #include "holdfast/io/write_options.hpp"
 #include "holdfast/limit/limit_load.hpp"
 #include "holdfast/proof/proof.hpp"
@@ -42,6 +43,7 @@ struct WholeRobot {
 /// One checked structure, for a report. Views must outlive the call.
 struct ReportEntry {
   std::string_view command = "check";  ///< What the report is of, as write_report_head() says it.
+  ReportOrigin origin = {};
   std::string_view name;
   const model::Robot* robot = nullptr;
   const verdict::Assessment* assessment = nullptr;
@@ -84,8 +86,8 @@ void write_report_json(std::ostream& out, const ReportEntry& entry,
 /// The JSON report as a text.
 std::string write_report_json(const ReportEntry& entry);
 
-/// The entry of a report for a structure that could not be checked.
-std::string write_error_json(const base::Error& error, std::string_view name);
+/// The report of a file that could not be checked.
+std::string write_error_json(const base::Error& error, const ReportOrigin& origin);
 
 /// The report for people: several lines, no colour, a line feed at the end.
 std::string write_report_text(const ReportEntry& entry);

@@ -10,7 +10,9 @@
 #include <string_view>
 
 #include "holdfast/io/document.hpp"
+#include "holdfast/io/figure.hpp"
 #include "holdfast/io/json_stream.hpp"
+#include "holdfast/io/report_head.hpp"
 #include "holdfast/plan/sequence.hpp"
 
 /// Reports the judgement of a sequence of steps.
@@ -18,6 +20,7 @@ namespace holdfast::io {
 
 /// A judged sequence, for a report. Views must outlive the call.
 struct StepsEntry {
+  ReportOrigin origin = {};
   std::string_view name;
   const Document* document = nullptr;
   const plan::SequenceJudgement* judgement = nullptr;
@@ -41,7 +44,7 @@ std::string write_steps_text(const StepsEntry& entry);
 
 /// A picture of the sequence: the verdicts of each stage as a band, load ratio and margin below, by
 /// step; of long sequences some steps together, by their worst. Self-contained.
-std::string write_steps_svg(const StepsEntry& entry);
+std::string write_steps_svg(const StepsEntry& entry, const FigureOptions& figure = {});
 
 /// A page with the picture and the report for people. Self-contained, without scripts.
 std::string write_steps_html(const StepsEntry& entry);

@@ -11,8 +11,8 @@
 #include "holdfast/base/cell.hpp"
 #include "holdfast/base/lattice.hpp"
 
-/// Named structures in which solvers are compared: a name and a size always mean the same cells, in
-/// the same order. They stand on z = 0.
+/// Named structures, to begin with and to compare solvers in: a name and a size always mean the
+/// same cells, in the same order. They stand on z = 0.
 namespace holdfast::model {
 
 enum class Family : std::uint8_t {
@@ -27,6 +27,10 @@ enum class Family : std::uint8_t {
   kBall,       ///< Face-centred: a ball of SIZE layers, its lowest layer on the ground.
   kSheet,      ///< Hexagonal: one module thick, SIZE wide and SIZE high.
   kPrismWall,  ///< Hexagonal prisms: SIZE wide, SIZE high, 4 thick.
+  kArch,       ///< Half a ring SIZE wide, 2 thick and 2 deep.
+  kCrane,      ///< A foot of 3x3, a mast SIZE high, a jib of SIZE/2 and a counter-jib of SIZE/4.
+  kStairs,     ///< SIZE steps, solid, 2 wide.
+  kWall,       ///< SIZE wide, SIZE high, one thick.
 };
 
 struct FamilyInfo {

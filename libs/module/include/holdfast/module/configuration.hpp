@@ -25,25 +25,22 @@ struct Configuration {
 };
 
 /// The part of the setup that is there: real modules know cubes alone.
-#ifdef HOLDFAST_AGENT_FLOOR_ONLY
-inline constexpr std::size_t kSetupBytes = sizeof(agent::Setup);
-#else
-inline constexpr std::size_t kSetupBytes = offsetof(agent::Setup, lattice);
-#endif
-
-inline constexpr std::size_t kConfigurationBytes = offsetof(Configuration, setup) + kSetupBytes;
+inline constexpr std::size_t kSetupBytes = sizeof(agent::CubeSetup);
+inline constexpr std::size_t kConfigurationBytes =
+    sizeof(Configuration) - sizeof(agent::Setup) + kSetupBytes;
 
 // An AVR aligns nothing and has no binary64: its pages are its own.
 #ifndef __AVR__
 static_assert(sizeof(agent::Identity) == 20 && offsetof(agent::Identity, is_anchor) == 5 &&
               offsetof(agent::Identity, cell) == 8);
-static_assert(offsetof(agent::Setup, facet_mm) == 48 &&
-              offsetof(agent::Setup, facet_numerator) == 88 &&
-              offsetof(agent::Setup, method) == 100 &&
-              offsetof(agent::Setup, iteration_count_max) == 104 &&
-              offsetof(agent::Setup, timing) == 112 && offsetof(agent::Setup, beam) == 152 &&
-              offsetof(agent::Setup, beam_float) == 216 && kSetupBytes == 248);
-static_assert(offsetof(Configuration, setup) == 32 && kConfigurationBytes == 280);
+static_assert(offsetof(agent::CubeSetup, facet_mm) == 48 &&
+              offsetof(agent::CubeSetup, facet_numerator) == 88 &&
+              offsetof(agent::CubeSetup, method) == 100 &&
+              offsetof(agent::CubeSetup, iteration_count_max) == 104 &&
+              offsetof(agent::CubeSetup, timing) == 112 &&
+              offsetof(agent::CubeSetup, beam) == 152 &&
+              offsetof(agent::CubeSetup, beam_float) == 216 && kSetupBytes == 248);
+static_assert(kConfigurationBytes == 280);
 #endif
 
 /// The checksum of everything but the magic number, the version and the sum itself.

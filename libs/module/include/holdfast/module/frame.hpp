@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "holdfast/agent/wire.hpp"
+#include "holdfast/agent/wire/wire.hpp"
 
 /// Packets as bytes on a serial line, framed in the manner of Blinky Blocks 2 but with
 /// marks of our own:

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "holdfast/agent/colour.hpp"
-#include "holdfast/agent/link.hpp"
+#include "holdfast/agent/wire/link.hpp"
 #include "holdfast/module/frame.hpp"
 
 /// What a board offers to the program of a module: a clock, six links, a lamp. A board without

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "holdfast/agent/link.hpp"
+#include "holdfast/agent/wire/link.hpp"
 #include "holdfast/base/cell.hpp"
 #include "holdfast/base/lattice.hpp"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "holdfast/agent/link.hpp"
+#include "holdfast/agent/wire/link.hpp"
 
 /// Describes what the lines between modules do to packets, and how modules wait for them.
 ///

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "holdfast/agent/link.hpp"
+#include "holdfast/agent/wire/link.hpp"
 
 namespace holdfast::sim {
 

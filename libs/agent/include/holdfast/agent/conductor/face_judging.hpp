@@ -18,7 +18,7 @@ class FaceJudging {
   /// Is kShape asked for before this verdict?
   bool is_due(const Whole& whole, Verdict verdict) const;
 
-  /// After kShape: kNext, or no order if the robot is too large. `error`: of load ratios.
+  /// The order after kShape: kNext, or no order if the robot is too large. `error`: of load ratios.
   Order after_shape(const Whole& whole, const Report& report, Verdict verdict, double error);
 
  private:

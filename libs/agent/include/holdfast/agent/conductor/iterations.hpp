@@ -5,13 +5,13 @@
 #include <array>
 #include <cstdint>
 
+#include "holdfast/agent/conductor/energy_bound.hpp"
 #include "holdfast/agent/conductor/law.hpp"
 #include "holdfast/agent/conductor/whole.hpp"
-#include "holdfast/agent/deflation.hpp"
-#include "holdfast/agent/energy_bound.hpp"
+#include "holdfast/agent/equilibrium/deflation.hpp"
 
 /// The iterations of an equilibrium as the root sees them: from the sums of one iteration to the
-/// coefficients of the next (src/minimal_residuals.hpp), and when to stop.
+/// coefficients of the next (minimal_residuals.hpp), and when to stop.
 namespace holdfast::agent {
 
 /// How good the last judgement was, and is to be.
@@ -21,9 +21,7 @@ struct Accuracy {
   double error_best;  ///< Since contact states have changed.
   double target;      ///< The error that is good enough.
   std::uint8_t stagnation_count;
-#ifndef HOLDFAST_AGENT_FLOOR_ONLY
-  std::uint8_t slack_bits;  ///< Setup::slack_bits
-#endif
+  [[no_unique_address]] PresentIf<kIsGeneral, std::uint8_t> slack_bits;  ///< Setup::slack_bits
 
   /// An equilibrium begins.
   void begin(const Whole& whole);
@@ -49,15 +47,17 @@ struct Newton {
   /// States are sought anew: none has been seen.
   void begin(const Whole& whole);
 
-  /// After an iteration: is the next one another of the same linear problem, or are the facets' own
-  /// forces looked up, and, where they are in balance, their states?
+  /// Decides after an iteration: is the next one another of the same linear problem, or are the
+  /// facets' own forces looked up, and, where they are in balance, their states?
   void steer(const Whole& whole, const Accuracy& accuracy, bool kept_states);
 };
 
 /// Rigid clusters between two polynomials (rigid_clusters.hpp).
 struct ClusterChoice {
-  bool has;       ///< Iterations are taken with clusters, ...
-  bool had;       ///< ... as the last one was.
+  /// Iterations are taken with clusters, ...
+  [[no_unique_address]] PresentIf<kHasAllMethods, bool> has;
+  /// ... as the last one was.
+  [[no_unique_address]] PresentIf<kHasAllMethods, bool> had;
   bool has_left;  ///< They brought nothing: never again.
 
   /// Does the order that begins find them?
@@ -126,7 +126,7 @@ class Iterations {
 
   bool deflates(const Whole& whole) const;
 
-  /// In whose place a change is kept.
+  /// The place at which a change is kept.
   std::uint8_t place_of_change();
 
   void begin_deflation(const Report& report);

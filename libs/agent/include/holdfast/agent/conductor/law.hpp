@@ -14,7 +14,7 @@ namespace holdfast::agent {
 /// stiffened where it does not settle.
 class Law {
  public:
-  /// It begins anew; `changes`: of contact states so far.
+  /// Begins anew; `changes`: of contact states so far.
   void begin(bool is_unilateral, std::uint32_t changes);
 
   /// Share of weak springs.
@@ -44,7 +44,7 @@ class Law {
   bool is_tilting() const { return is_tilting_; }
 
   /// May weak springs away from a level floor carry?
-  bool may_pull() const { return kHasSurroundings && may_pull_; }
+  bool may_pull() const { return kIsGeneral && may_pull_; }
 
   /// May a facet have a second state?
   bool may_differ() const { return may_differ_; }
@@ -57,26 +57,26 @@ class Law {
   /// The unilateral law is asked as well, as weak springs may pull.
   void ask_second() { is_second_ = true; }
 
-  bool is_second() const { return kHasSurroundings && is_second_; }
+  bool is_second() const { return kIsGeneral && is_second_; }
 
   /// Open feet are freed, to see whether the verdict stays.
   Order free_open_feet();
 
   bool is_comparing() const { return is_comparing_; }
 
-  /// Of a verdict that is begun anew.
+  /// Forgets it for a verdict that is begun anew.
   void forget_comparison();
 
   void note_standing(bool is_standing) { is_standing_ = is_standing; }
 
-  /// By the corners that press.
+  /// Does the robot stand, by the corners that press?
   bool is_standing() const { return is_standing_; }
 
   void note_held(std::uint32_t open_count) { open_held_count_ = open_count; }
 
   bool is_any_held_open() const { return open_held_count_ > 0; }
 
-  bool is_toppling() const { return kHasSurroundings && springs_ == WeakSprings::kToppling; }
+  bool is_toppling() const { return kIsGeneral && springs_ == WeakSprings::kToppling; }
 
   /// The verdict by the largest load ratio, `first` as it was told and `ratio` at the last
   /// judgement, whose error is bounded. `other_fails`: another solution does.

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "holdfast/agent/conductor/whole.hpp"
-#include "holdfast/agent/stages.hpp"
+#include "holdfast/agent/world/stages.hpp"
 
 namespace holdfast::agent {
 
@@ -17,8 +17,8 @@ class Learning {
   /// The first order of a round.
   static Order begin();
 
-  /// After kPlan and kForget. One planned cell after the other, by their order. A plan that has
-  /// ended is forgotten by all, and then all begins anew: so every withdrawal goes before every
+  /// The order after kPlan and kForget. Planned cells come one by one, in their order. A plan that
+  /// has ended is forgotten by all, and then all begins anew: so every withdrawal goes before every
   /// plan. It is only behind the last plan that a robot with too many or disputed ones gives up: by
   /// then another sweep has gone down than the one that found them, as Announcements::settle()
   /// needs.
@@ -26,7 +26,7 @@ class Learning {
 
   static Order after_hosts(Whole& whole, const Report& report, const Planned& planned);
 
-  /// After kMass: kAngles, or no order where an equilibrium is next.
+  /// The order after kMass: kAngles, or no order where an equilibrium is next.
   static Order after_mass(Whole& whole, const Setup& setup, const Report& report);
 
  private:

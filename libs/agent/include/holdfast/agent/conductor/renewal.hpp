@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "holdfast/agent/conductor/whole.hpp"
-#include "holdfast/agent/messages.hpp"
+#include "holdfast/agent/messages/messages.hpp"
 
 namespace holdfast::agent {
 

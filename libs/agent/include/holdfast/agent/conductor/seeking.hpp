@@ -48,7 +48,7 @@ class Seeking {
   /// An equilibrium begins.
   void reset();
 
-  /// It begins from rest, and nothing more is sought.
+  /// The equilibrium begins from rest, and nothing more is sought.
   void end(bool other_fails);
 
   bool is_active() const;
@@ -75,8 +75,9 @@ class Seeking {
   Order begin(const Whole& whole, const Law& law, Newton& newton);
   Order begin_one_foot(const Whole& whole, const Law& law, Newton& newton);
 
-  /// After kSeek. The first report, of what was found, only names the first facet. Where there are
-  /// fronts it is the first that leads elsewhere, and if there is none nobody has to go back.
+  /// The move after kSeek. The first report, of what was found, only names the first facet. Where
+  /// there are fronts it is the first that leads elsewhere, and if there is none nobody has to go
+  /// back.
   Move after_seek(const Whole& whole, const Report& report, Newton& newton);
 
   /// Iterations begin from the states that facets have now. With fronts: are facets tried that the
@@ -101,7 +102,7 @@ class Seeking {
  private:
   enum class Stage : std::uint8_t { kNotYet, kTrying, kReturning, kDone };
 
-  /// Of so many facets all states are tried, as by the exact solver, in a robot of so few modules:
+  /// All states of so many facets are tried, as by the exact solver, in a robot of so few modules:
   /// a hundred solves, which take larger ones five times as long as trials of one foot.
   static constexpr std::uint8_t kFewFeet = 3;
 

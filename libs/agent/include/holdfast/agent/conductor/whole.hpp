@@ -5,10 +5,10 @@
 #include <array>
 #include <cstdint>
 
-#include "holdfast/agent/order.hpp"
-#include "holdfast/agent/planned.hpp"
+#include "holdfast/agent/groups/planned.hpp"
+#include "holdfast/agent/messages/order.hpp"
 #include "holdfast/agent/setup.hpp"
-#include "holdfast/agent/surroundings.hpp"
+#include "holdfast/agent/world/surroundings.hpp"
 
 namespace holdfast::agent {
 
@@ -44,7 +44,7 @@ struct Whole {
   std::array<std::int32_t, 2> moment;  ///< ... and their first moments from the root.
 
   /// Never in a program that knows a floor only.
-  bool is_uneven() const { return kHasSurroundings && has_uneven_supports; }
+  bool is_uneven() const { return kIsGeneral && has_uneven_supports; }
 
   /// Do contact states say whether it falls?
   bool may_fall() const { return is_uneven() && !is_fixed; }
