@@ -188,9 +188,7 @@ void JsonReader::read_member(const std::string& key, const Json& value, const Js
 void JsonReader::read_material(const Json& value, const JsonPlace& place) {
   for (const auto& [key, member] : reading_.members(value, place)) {
     const JsonPlace here = place.at(key);
-    const auto* parameter =
-        std::ranges::find(model::kMaterialParameters, key, &model::MaterialParameter::key);
-    if (parameter != model::kMaterialParameters.end()) {
+    if (const auto* const parameter = model::find_parameter(key)) {
       reading_.document.material.*parameter->value = reading_.number(member, here);
     } else if (is_material_extension(key)) {
       if (allows(here)) {
