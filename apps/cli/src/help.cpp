@@ -160,7 +160,7 @@ std::string full_name(const CLI::App& command) {
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& known) {
   const std::vector<std::string_view> names(known.begin(), known.end());
   const auto near = io::near_miss(name, names);
-  return near ? fmt::format("; did you mean '{}'?", *near) : std::string();
+  return near ? "; " + io::did_you_mean(*near) : std::string();
 }
 
 std::vector<std::string> option_names(const CLI::App& command) {

@@ -104,4 +104,8 @@ std::optional<std::string_view> near_miss(std::string_view name, Names known) {
   return nearest;
 }
 
+std::string did_you_mean(std::string_view known) {
+  return "did you mean '" + std::string(known) + "'?";
+}
+
 }  // namespace holdfast::io

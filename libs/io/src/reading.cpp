@@ -50,10 +50,14 @@ std::optional<std::string> meant_parameter(std::string_view name) {
   if (!key) {
     return std::nullopt;
   }
-  const auto* const parameter =
-      std::ranges::find(model::kMaterialParameters, *key, &model::MaterialParameter::key);
+  const auto* const parameter = model::find_parameter(*key);
   return parameter->visiblesim != nullptr ? parameter->visiblesim
                                           : fmt::format("{}' of '<{}>", *key, kOwnElement);
+}
+
+base::Error unknown_name(const std::string& what, std::string_view meant, std::string where = {}) {
+  return base::bad_input(fmt::format("{} is unknown: {}", what, did_you_mean(meant)),
+                         std::move(where));
 }
 
 }  // namespace
@@ -84,8 +88,7 @@ void Reading::warn(std::string message, const Where& where) {
 void Reading::note_unknown(const std::string& what, std::string_view name, Names known,
                            std::string_view fate, const Where& where) {
   if (const auto meant = near_miss(name, known)) {
-    fail({base::ErrorCode::kBadInput,
-          fmt::format("{} is unknown: did you mean '{}'?", what, *meant), where()});
+    fail(unknown_name(what, *meant, where()));
   } else {
     warn(fmt::format("{} is unknown and {}", what, fate), where);
   }
@@ -263,10 +266,7 @@ void Reading::warn_of_attributes() {
                              ? std::nullopt
                              : meant_parameter(attribute.first);
       if (meant) {
-        fail({base::ErrorCode::kBadInput,
-              fmt::format("the {} {} is unknown: did you mean '{}'?", kind,
-                          excerpt(attribute.first), *meant),
-              ""});
+        fail(unknown_name(fmt::format("the {} {}", kind, excerpt(attribute.first)), *meant));
       } else if (!is_known) {
         note_unknown(fmt::format("the {} {}", kind, excerpt(attribute.first)), attribute.first,
                      known, "kept", [] { return std::string(); });
@@ -283,10 +283,7 @@ void Reading::warn_of_targets() {
   for (const Element& target : document.targets) {
     const std::string* const format = find_attribute(target.attributes, "format");
     if (const auto meant = near_miss(format == nullptr ? "" : *format, kTargetFormats)) {
-      fail({base::ErrorCode::kBadInput,
-            fmt::format("the target format {} is unknown: did you mean '{}'?", excerpt(*format),
-                        *meant),
-            ""});
+      fail(unknown_name("the target format " + excerpt(*format), *meant));
     }
     warn(fmt::format("the target format {} is not supported: the target is kept, not checked",
                      format == nullptr ? "''" : excerpt(*format)),

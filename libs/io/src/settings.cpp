@@ -19,12 +19,6 @@ namespace {
 
 constexpr std::string_view kMaterialPrefix = "material.";
 
-const model::MaterialParameter* find_parameter(std::string_view key) {
-  const auto found =
-      std::ranges::find(model::kMaterialParameters, key, &model::MaterialParameter::key);
-  return found == model::kMaterialParameters.end() ? nullptr : &*found;
-}
-
 bool is_connector_key(std::string_view key) {
   return key != kBendingKey && std::ranges::find(kConnectorKeys, key) != kConnectorKeys.end();
 }
@@ -40,9 +34,9 @@ base::Error unknown_key(std::string_view key) {
     names.push_back(parameter.key);
   }
   const auto near = near_miss(key, names);
-  return base::bad_input(fmt::format("a material has no '{}'{}", one_line(key),
-                                     near ? fmt::format("; did you mean '{}'?", *near)
-                                          : fmt::format("; it has {}", fmt::join(names, ", "))));
+  return base::bad_input(fmt::format(
+      "a material has no '{}'{}", one_line(key),
+      near ? "; " + did_you_mean(*near) : fmt::format("; it has {}", fmt::join(names, ", "))));
 }
 
 }  // namespace
@@ -57,7 +51,7 @@ base::Result<Setting> find_setting(std::string_view text) {
   }
   std::string_view key = text.substr(0, mark);
   key.remove_prefix(key.starts_with(kMaterialPrefix) ? kMaterialPrefix.size() : 0);
-  if (const model::MaterialParameter* const parameter = find_parameter(key)) {
+  if (const model::MaterialParameter* const parameter = model::find_parameter(key)) {
     if (auto fault = model::find_fault(*parameter, *value)) {
       return base::bad_input(*std::move(fault));
     }
@@ -79,7 +73,7 @@ std::optional<std::string> take_setting(const Setting& setting, Document& docume
     return fmt::format("{} cannot be set, as the file gives {} for all connections", setting.key,
                        kStrengthKey);
   }
-  if (const model::MaterialParameter* const parameter = find_parameter(setting.key)) {
+  if (const model::MaterialParameter* const parameter = model::find_parameter(setting.key)) {
     document.material.*parameter->value = setting.value;
     return std::nullopt;
   }

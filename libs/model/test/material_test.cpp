@@ -94,6 +94,14 @@ TEST(Material, reaches_the_beam_parameter_by_parameter) {
   EXPECT_EQ(section.torsion, 4);
 }
 
+TEST(Material, has_a_parameter_for_each_key_and_for_no_other) {
+  EXPECT_EQ(find_parameter("mass_kg")->value, &Material::mass_kg);
+  EXPECT_EQ(find_parameter("contact_gamma")->value, &Material::contact_gamma);
+  for (const char* const other : {"", "mass", "mass_kgs", "Mass_kg"}) {
+    EXPECT_EQ(find_parameter(other), nullptr) << other;
+  }
+}
+
 TEST(Material, accepts_any_reasonable_value) {
   for (const Parameter& parameter : kParameters) {
     EXPECT_EQ(find_material_fault(with(parameter, parameter.good)), std::nullopt);

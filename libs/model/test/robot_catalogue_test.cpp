@@ -17,11 +17,6 @@ namespace {
 
 constexpr std::string_view kLawKeys[] = {"lever_mm", "shear_strength_n", "torsion_strength_nmm"};
 
-const MaterialParameter* find_parameter(std::string_view key) {
-  const auto* const found = std::ranges::find(kMaterialParameters, key, &MaterialParameter::key);
-  return found == kMaterialParameters.end() ? nullptr : found;
-}
-
 TEST(RobotCatalogue, has_every_robot_once) {
   std::set<std::string_view> names;
   for (const CatalogueRobot& robot : robot_catalogue()) {

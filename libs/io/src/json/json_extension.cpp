@@ -111,9 +111,7 @@ void read_gravity(JsonReading& reading, const Json& value, const JsonPlace& plac
   }
   if (gravity[0] == 0 && gravity[1] == 0 && gravity[2] < 0) {
     document.material.gravity_m_s2 = -gravity[2];
-    const auto* const parameter = std::ranges::find(model::kMaterialParameters, "gravity_m_s2",
-                                                    &model::MaterialParameter::key);
-    if (const auto fault = model::find_fault(*parameter, -gravity[2])) {
+    if (const auto fault = model::find_fault(*model::find_parameter("gravity_m_s2"), -gravity[2])) {
       reading.fail(place, "the size of " + *fault);
     }
   } else {

@@ -199,9 +199,7 @@ void JsonReader::read_material(const Json& value, const JsonPlace& place) {
   for (const auto& [key, member] :
        reading_.members(value, place, "an object of numbers, such as {\"mass_kg\": 0.061}")) {
     const JsonPlace here = place.at(key);
-    const auto* parameter =
-        std::ranges::find(model::kMaterialParameters, key, &model::MaterialParameter::key);
-    if (parameter != model::kMaterialParameters.end()) {
+    if (const auto* const parameter = model::find_parameter(key)) {
       reading_.document.material.*parameter->value = reading_.number(member, here);
     } else if (is_material_extension(key)) {
       if (allows(here)) {

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 /// Names that are not known, but look as if they were meant to be.
@@ -20,5 +21,8 @@ std::optional<std::string_view> known_spelling(std::string_view name, Names know
 /// letters or more, with one letter wrong, missing, too many or in its neighbour's place, from
 /// eight letters on with two. None if it is like none, or is one of them.
 std::optional<std::string_view> near_miss(std::string_view name, Names known);
+
+/// "did you mean 'mass_kg'?"
+std::string did_you_mean(std::string_view known);
 
 }  // namespace holdfast::io

@@ -67,6 +67,16 @@ inline constexpr auto kMaterialParameters = std::to_array<MaterialParameter>({
 static_assert(sizeof(Material) == kMaterialParameters.size() * sizeof(double),
               "every number of a material has a row");
 
+/// The parameter of this key; null if a material has none.
+constexpr const MaterialParameter* find_parameter(std::string_view key) {
+  for (const MaterialParameter& parameter : kMaterialParameters) {
+    if (parameter.key == key) {
+      return &parameter;
+    }
+  }
+  return nullptr;
+}
+
 /// The section of every beam, with Jv from J and nu.
 mechanics::BeamSection<double> beam_section(const Material& material);
 
