@@ -238,7 +238,7 @@ TEST(Facade, describes_an_error_in_one_line) {
   const auto broken = load_text("{");
   ASSERT_FALSE(broken);
   const std::string line = describe(broken.error(), "robot.json");
-  EXPECT_TRUE(line.starts_with("robot.json: line 1: ")) << line;
+  EXPECT_TRUE(line.starts_with("robot.json: line 1, column 2: ")) << line;
   EXPECT_EQ(line.find('\n'), std::string::npos);
 }
 

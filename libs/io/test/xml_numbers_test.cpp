@@ -135,7 +135,7 @@ TEST(XmlNumbers, kinds_that_are_none_are_named_by_the_attribute) {
   const base::Error error =
       error_of(file_with("", "", "", "position=\"0,0,1\" holdfastKind=\"q\""));
   EXPECT_EQ(error.where, "line 8");
-  EXPECT_EQ(error.message.find("holdfastKind of <block> at (0,0,1): the kind 'q' is none"), 0U)
+  EXPECT_EQ(error.message.find("holdfastKind of <block> at (0,0,1): the kind 'q' is not in "), 0U)
       << error.message;
 }
 

@@ -248,7 +248,7 @@ TEST(Robot, has_one_module_in_a_cell) {
 
 TEST(Robot, is_connected_without_its_planned_modules) {
   expect_error({.existing = {{0, 0, 0}, {2, 0, 0}, {3, 0, 0}}},
-               {"not connected", "2 of 3 modules", "(2,0,0)", "with (0,0,0)"});
+               {"not connected", "2 of 3 modules", "(2,0,0)", "not connected to (0,0,0)"});
   expect_error({.existing = {{0, 0, 0}, {2, 0, 0}}, .planned = {{1, 0, 0}}}, {"not connected"});
   expect_error({.existing = {{0, 0, 0}, {1, 1, 0}}}, {"not connected", "(1,1,0)"});
 }
