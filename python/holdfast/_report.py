@@ -167,9 +167,10 @@ class Report(Judged):
         with told(progress, 'remedies', is_counted=True) as tell:
             found = _core.remedies(self._held, threads, memory, bonded, tell)
         factor = found.pop('strength_factor')
-        return Remedies(*(found[kind][0] for kind in ('module', 'prop', 'fixing', 'removal')),
-                        strength_factor=factor,
-                        tried={kind: tried for kind, (_, tried) in found.items()})
+        module, prop, fixing, removal = (
+            found[kind][0] for kind in ('module', 'prop', 'fixing', 'removal'))
+        return Remedies(module, prop, fixing, removal, factor,
+                        {kind: tried for kind, (_, tried) in found.items()})
 
     @property
     def module_load_ratios(self) -> npt.NDArray[np.float64]:
