@@ -196,7 +196,7 @@ TEST(Report, says_first_what_it_is) {
   EXPECT_EQ(member.key(), "program");
   EXPECT_EQ(*member++, "holdfast " + std::string(program_version()));
   EXPECT_EQ(member.key(), "robot");
-  EXPECT_EQ(*member++, Json({{"modules", chain.robot.modules().size()}}));
+  EXPECT_EQ(*member++, nlohmann::ordered_json({{"modules", chain.robot.modules().size()}}));
   EXPECT_EQ(member.key(), "name");
 }
 

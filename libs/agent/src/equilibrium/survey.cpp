@@ -106,7 +106,7 @@ Report announcement_report(const Order& order, bool has_last, const Announcement
 }
 
 /// Was this module told of a step that has not been learned yet?
-bool is_step_told(const Workspace& ws) {
+[[maybe_unused]] bool is_step_told(const Workspace& ws) {
   return ws.stages() != nullptr && ws.stage() == Stage::kNone && ws.stages()->has_told();
 }
 
