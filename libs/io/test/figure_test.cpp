@@ -128,7 +128,7 @@ TEST(Figure, shows_cubes_from_the_front_as_squares) {
   }
   ASSERT_EQ(corners.size(), 7U);
   // It is drawn first, and another one in its place.
-  EXPECT_TRUE(std::ranges::any_of(corners.begin() + 1, corners.end(), [&](const Point& corner) {
+  EXPECT_TRUE(std::any_of(corners.begin() + 1, corners.end(), [&](const Point& corner) {
     return std::hypot(corner.x - corners[0].x, corner.y - corners[0].y) < 0.02;
   }));
   EXPECT_NE(std::string(picture.root().child_value("desc")).find("Front view"), std::string::npos);
