@@ -186,6 +186,12 @@ export const pointerMoves = (page) =>
     return { found, cells: cells.size };
   });
 
+/** A native report without what only a command line has: options, and the file's name. */
+export function withoutCommandLine({ options: _, ...report }) {
+  const { file: __, ...robot } = report.robot;
+  return { ...report, robot };
+}
+
 /** The native program's reports of structure files. */
 export const nativeReports = (files) => [report(['check', '--json', '-', ...files])].flat();
 

@@ -10,6 +10,7 @@ import path from 'node:path';
 import { after, before, test } from 'node:test';
 import {
   clickFace, count, dropFile, facePoint, launch, message, openExample, openPage, program, repository, settled, temporaryFolder, verdict,
+  withoutCommandLine,
 } from './browser.mjs';
 
 let browser;
@@ -50,11 +51,11 @@ function native(text) {
   writeFileSync(place, text);
   const run = () => execFileSync(program, ['steps', '--quiet', '--json', '-', place], { encoding: 'utf8', maxBuffer: 1 << 28 });
   try {
-    return comparable(JSON.parse(run()));
+    return comparable(withoutCommandLine(JSON.parse(run())));
   } catch (error) {
     // Exit codes 1 and 2 are verdicts.
     assert.ok(error.status === 1 || error.status === 2, error.message);
-    return comparable(JSON.parse(error.stdout));
+    return comparable(withoutCommandLine(JSON.parse(error.stdout)));
   }
 }
 

@@ -159,7 +159,7 @@ std::optional<int> launch(const std::vector<std::string>& arguments) {
   const bool is_twice = take_ranks(others).has_value();
   const bool is_number = error == std::errc() && end == ranks->data() + ranks->size();
   if (!is_number || count < 1 || is_twice) {
-    fmt::print(stderr, "{}--ranks {}, expected one number, 1 or more\n", kOurs, *ranks);
+    fmt::print(stderr, "{}--ranks {}: expected a number, 1 or more, given once\n", kOurs, *ranks);
     return kExitUsage;
   }
   return run_mpirun(*ranks, others);
