@@ -4,14 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <set>
 #include <span>
 #include <utility>
 
 #include "holdfast/base/check.hpp"
 #include "holdfast/plan/candidates.hpp"
-#include "holdfast/plan/robot_state.hpp"
+#include "part_of.hpp"
 
 namespace holdfast::plan {
 namespace {
@@ -65,15 +64,11 @@ class RemedySearch {
  public:
   RemedySearch(const model::RobotSpec& spec, const model::Robot& robot,
                const RemedyOptions& options)
-      : spec_(spec),
-        state_(spec),
-        robot_(robot),
-        options_(options),
-        order_(farthest_first(robot)) {}
+      : spec_(spec), robot_(robot), options_(options), order_(farthest_first(robot)) {}
 
   Remedies find() {
     const std::vector<Cell> free = free_cells(spec_);
-    const std::vector<Cell> props = prop_cells();
+    const std::vector<Cell> props = prop_cells(free);
     const std::vector<Cell> fixings = module_cells(false);
     const std::vector<Cell> removals = module_cells(true);
     all_ = free.size();
@@ -105,8 +100,8 @@ class RemedySearch {
     return cells;
   }
 
-  /// The free cells below modules that nothing supports, each once.
-  std::vector<Cell> prop_cells() const {
+  /// Returns those of the free cells that are below modules that nothing supports, each once.
+  std::vector<Cell> prop_cells(std::span<const Cell> free) const {
     const auto& gravity = robot_.gravity();
     const double size = std::hypot(gravity[0], gravity[1], gravity[2]);
     std::vector<Cell> cells;
@@ -120,7 +115,7 @@ class RemedySearch {
         const auto unit = base::unit_vector(robot_.lattice(), direction);
         const Cell cell = base::neighbour(robot_.lattice(), module.cell, direction);
         const double down = unit[0] * gravity[0] + unit[1] * gravity[1] + unit[2] * gravity[2];
-        if (down > kBelow * size && state_.find(cell) == RobotState::kNone &&
+        if (down > kBelow * size && std::ranges::binary_search(free, cell) &&
             known.insert(cell).second) {
           cells.push_back(cell);
         }
@@ -135,40 +130,21 @@ class RemedySearch {
     return changed;
   }
 
-  /// The robot of a state in which those that were planned are so still, but for fixed ones.
-  model::RobotSpec spec_of(const RobotState& state) const {
-    model::RobotSpec changed = state.spec();
-    const std::set<Cell> planned(spec_.planned.begin(), spec_.planned.end());
-    const auto is_planned = [&](const Cell& cell) {
-      return planned.contains(cell) && !state.module(state.find(cell)).is_fixed;
-    };
-    std::ranges::copy_if(changed.existing, std::back_inserter(changed.planned), is_planned);
-    std::erase_if(changed.existing, is_planned);
+  model::RobotSpec fixed(const Cell& cell) const {
+    model::RobotSpec changed = spec_;
+    if (std::erase(changed.planned, cell) > 0) {
+      changed.existing.push_back(cell);
+    }
+    changed.fixed.push_back(cell);
     return changed;
   }
 
-  model::RobotSpec fixed(const Cell& cell) const {
-    RobotState changed = state_;
-    ModuleState module = state_.module(state_.find(cell));
-    module.is_fixed = true;
-    std::vector<model::CellPair> released;  // Those of a module that goes are forgotten.
-    for (const model::CellPair& pair : state_.released()) {
-      if (pair[0] == cell || pair[1] == cell) {
-        released.push_back(pair);
-      }
-    }
-    changed.remove(cell);
-    changed.add(module);
-    for (const model::CellPair& pair : released) {
-      changed.release(pair);
-    }
-    return spec_of(changed);
-  }
-
   model::RobotSpec without(const Cell& cell) const {
-    RobotState changed = state_;
-    changed.remove(cell);
-    return spec_of(changed);
+    model::RobotSpec changed = spec_;
+    std::erase(changed.existing, cell);
+    std::erase(changed.planned, cell);
+    forget_absent(changed);
+    return changed;
   }
 
   void count_one() {
@@ -221,7 +197,6 @@ class RemedySearch {
   }
 
   const model::RobotSpec& spec_;
-  RobotState state_;
   const model::Robot& robot_;
   const RemedyOptions& options_;
   std::vector<std::size_t> order_;
