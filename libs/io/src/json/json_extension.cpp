@@ -164,9 +164,7 @@ ColoredObstacle obstacle(JsonReading& reading, const Json& value, const JsonPlac
   if (is_list ? has_corner || found.cells.empty() : !is_box) {
     reading.fail(place, "expected either \"from\" and \"to\", or \"cells\" with at least one");
   }
-  if (found.to.x < found.from.x || found.to.y < found.from.y || found.to.z < found.from.z) {
-    reading.fail(place, "no coordinate of \"to\" may be below that of \"from\"");
-  }
+  reading.expect_corners(found.from, found.to, place);
   return colored;
 }
 

@@ -24,9 +24,7 @@ bool has_room(JsonReading& reading, std::uint64_t count, const JsonPlace& place)
 std::vector<Cell> box_cells(JsonReading& reading, const Json& entry, const JsonPlace& place) {
   const Cell from = reading.cell(entry.at("from"), place.at("from"));
   const Cell to = reading.cell(entry.at("to"), place.at("to"));
-  if (to.x < from.x || to.y < from.y || to.z < from.z) {
-    reading.fail(place, "no coordinate of \"to\" may be below that of \"from\"");
-  }
+  reading.expect_corners(from, to, place);
   const auto length = [](std::int32_t low, std::int32_t high) {
     return static_cast<std::uint64_t>(high - low) + 1;
   };

@@ -149,6 +149,13 @@ base::Cell JsonReading::cell(const Json& value, const JsonPlace& place) {
   return {x, y, z};
 }
 
+void JsonReading::expect_corners(const base::Cell& from, const base::Cell& to,
+                                 const JsonPlace& place) {
+  if (to.x < from.x || to.y < from.y || to.z < from.z) {
+    fail(place, "no coordinate of \"to\" may be below that of \"from\"");
+  }
+}
+
 Color JsonReading::color(const Json& value, const JsonPlace& place) {
   const auto [red, green, blue] = triple(value, place, kColorRange);
   return {red, green, blue};

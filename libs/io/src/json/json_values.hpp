@@ -56,6 +56,9 @@ class JsonReading : public Reading {
   base::Cell cell(const Json& value, const JsonPlace& place);
   Color color(const Json& value, const JsonPlace& place);
 
+  /// Fails if a box between these corners has no cell.
+  void expect_corners(const base::Cell& from, const base::Cell& to, const JsonPlace& place);
+
   /// Reads attributes; `is_reserved` tells names that have a place of their own.
   Attributes attributes(const Json& value, const JsonPlace& place,
                         bool (*is_reserved)(std::string_view name));
