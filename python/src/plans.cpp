@@ -56,6 +56,15 @@ JudgementRow row_of(const Judged& judged) {
           .margin_mm = judged.margin_mm.value_or(kNone)};
 }
 
+template <class Judged>
+JudgementRow row_at(const base::Cell& cell, const Judged& judged) {
+  JudgementRow row = row_of(judged);
+  row.cell[0] = cell.x;
+  row.cell[1] = cell.y;
+  row.cell[2] = cell.z;
+  return row;
+}
+
 std::shared_ptr<Places> next(const SharedStructure& structure, const py::handle& threads,
                              const py::handle& memory, bool is_bonded, py::object progress) {
   Watch watch(std::move(progress));
@@ -68,10 +77,7 @@ std::shared_ptr<Places> next(const SharedStructure& structure, const py::handle&
 py::array candidates(const Places& places) {
   std::vector<JudgementRow> rows;
   for (const Trial& trial : places.result.candidates) {
-    JudgementRow& row = rows.emplace_back(row_of(trial));
-    row.cell[0] = trial.cell.x;
-    row.cell[1] = trial.cell.y;
-    row.cell[2] = trial.cell.z;
+    rows.push_back(row_at(trial.cell, trial));
   }
   return rows_of(rows, true);
 }
@@ -90,10 +96,7 @@ py::dict remedies(const SharedCheck& check, const py::handle& threads, const py:
     const plan::RemedyList& list = found.lists[k];
     std::vector<JudgementRow> rows;
     for (const plan::Remedy& remedy : list.safe) {
-      JudgementRow& row = rows.emplace_back(row_of(remedy.judgement));
-      row.cell[0] = remedy.cell.x;
-      row.cell[1] = remedy.cell.y;
-      row.cell[2] = remedy.cell.z;
+      rows.push_back(row_at(remedy.cell, remedy.judgement));
     }
     const std::string kind(plan::name(static_cast<plan::RemedyKind>(k)));
     out[py::str(kind)] = py::make_tuple(rows_of(rows, true), list.tried_count);
