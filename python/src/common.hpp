@@ -29,12 +29,21 @@ class Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// The readers' one line, and a line for each thing that they had noted before.
+inline std::string with_notes(const base::Error& error, std::string_view file) {
+  std::string text = describe(error, file);
+  for (const std::string& note : error.notes) {
+    text += "\nnote: " + note;
+  }
+  return text;
+}
+
 /// The value, or holdfast.Error with the readers' one line. `file` stands before it, if it is
 /// named.
 template <class T>
 T take(base::Result<T> result, std::string_view file = {}) {
   if (!result) {
-    throw Error(describe(result.error(), file));
+    throw Error(with_notes(result.error(), file));
   }
   return std::move(result).value();
 }

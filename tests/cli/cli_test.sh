@@ -26,7 +26,7 @@ expect_line out "^SAFE +arm_breaks_a$"
 expect_line out 'load ratio +0\.6402 +\(2,1,2\)-\(3,1,2\)'
 expect_exit 1 check "$overload"
 expect_line out '^OVERLOAD'
-expect_line out '\(2,1,2\)-\(3,1,2\), carries 1\.2004 of its strength'
+expect_line out '\(2,1,2\)-\(3,1,2\), is loaded to 120\.04 % of its strength'
 expect_exit 1 check "$unstable"
 expect_line out '^UNSTABLE'
 expect_line out '8\.00 mm beyond it'
@@ -764,7 +764,7 @@ expect_exit 0 view tag.json --no-open --out page.html
 expect_line page.html '<title>&lt;/script>&lt;b> - holdfast</title>'
 [ "$(grep -c '</script' page.html)" -eq 1 ] || fault "a name ends the script: $(cat page.html)"
 expect_exit 1 check "$overload" --html page.html
-expect_line page.html 'carries 1\.2004 of its strength'
+expect_line page.html 'is loaded to 120\.04 % of its strength'
 expect_exit 64 check "$safe" "$overload" --html page.html
 expect_exit 0 view "$safe" --out -
 expect_line out '<title>arm_breaks_a - holdfast</title>'

@@ -52,6 +52,7 @@ class CheckRun {
       : options_(options), progress_(options.is_quiet) {}
 
   int run() {
+    note_idle_connections(options_.connections, {options_.json, options_.csv});
     for (std::size_t i = 0; i < options_.files.size(); ++i) {
       if (is_many()) {
         progress_.show(

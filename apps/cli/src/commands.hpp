@@ -5,11 +5,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
@@ -95,8 +97,16 @@ inline CLI::Option& add_seed(CLI::App& command, std::uint64_t& seed, const std::
               });
 }
 
+/// Prints a reader's notes to standard error, whatever is asked for: a silent note is a lost one.
+inline void print_notes(std::span<const std::string> notes, const std::string& file) {
+  for (const std::string& note : notes) {
+    fmt::print(stderr, "holdfast: {}: note: {}\n", io::one_line(file), note);
+  }
+}
+
 /// The one form of an error on the terminal.
 inline void print_error(const base::Error& error, const std::string& file) {
+  print_notes(error.notes, file);
   fmt::print(stderr, "holdfast: {}\n", describe(error, file));
 }
 
@@ -104,13 +114,6 @@ inline void print_error(const base::Error& error, const std::string& file) {
 inline int fail(const base::Error& error, const std::string& file) {
   print_error(error, file);
   return kExitBadInput;
-}
-
-/// Prints a reader's notes to standard error, whatever is asked for: a silent note is a lost one.
-inline void print_notes(std::span<const std::string> notes, const std::string& file) {
-  for (const std::string& note : notes) {
-    fmt::print(stderr, "holdfast: {}: note: {}\n", io::one_line(file), note);
-  }
 }
 
 /// Notes are on standard error already: a text report for the same place does without them.
@@ -158,6 +161,16 @@ inline void add_connections(CLI::App& command, std::string& choice) {
         return io::find_connection_choice(text) ? "" : "expected all, broken or a count";
       })
       ->capture_default_str();
+}
+
+/// Says that --connections has no effect where no report that lists connections is written.
+inline void note_idle_connections(const std::string& choice,
+                                  std::initializer_list<std::string> reports) {
+  if (choice != "all" && std::ranges::all_of(reports, &std::string::empty)) {
+    fmt::print(stderr,
+               "holdfast: note: --connections has no effect on the text; it chooses what the "
+               "files of connections list, such as that of --json\n");
+  }
 }
 
 /// Writes a text, or what a function writes into a stream, to a file; "-" is standard output.

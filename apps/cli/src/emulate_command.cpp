@@ -65,6 +65,7 @@ class EmulateRun {
     if (complain_of_outputs(inputs, options_.outputs())) {
       return kExitUsage;
     }
+    note_idle_connections(options_.connections, {options_.json});
     const auto structure = load_with_notes(options_.file, options_.reading);
     if (!structure) {
       return fail(structure.error(), options_.file);
@@ -93,6 +94,8 @@ class EmulateRun {
     if (!changed) {
       return fail(changed.error(), options_.file);
     }
+    print_notes(std::span(changed.value().structure.warnings).subspan(structure.warnings.size()),
+                options_.file);
     emulation_.tells_planned = false;
     emulation_.announcements = changed.value().announcements;
     for (sim::Announcement& announcement : emulation_.announcements) {

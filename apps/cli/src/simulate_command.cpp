@@ -118,6 +118,7 @@ class SimulateRun {
     if (complain_of_outputs({&options_.file, 1}, options_.outputs())) {
       return kExitUsage;
     }
+    note_idle_connections(options_.connections, {options_.json});
     if (options_.takes_steps || options_.judges_stages) {
       return run_steps();
     }
@@ -250,6 +251,8 @@ class SimulateRun {
     if (!changed) {
       return fail(changed.error(), options_.file);
     }
+    print_notes(std::span(changed.value().structure.warnings).subspan(structure.warnings.size()),
+                options_.file);
     simulation_.tells_planned = false;
     simulation_.announcements = changed.value().announcements;
     simulation_.faults = changed.value().attachments;

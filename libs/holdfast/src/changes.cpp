@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
+#include <string>
 
 #include "holdfast/distributed.hpp"
 
@@ -15,14 +17,25 @@ bool is_occupied(const Modules& modules, const base::Cell& cell) {
   return std::ranges::find(modules, cell, &io::ModuleEntry::cell) != modules.end();
 }
 
-/// Updates what is planned after a change.
-void follow(const Change& change, const Modules& modules, io::Step& step) {
+/// Updates what is planned after a change. Returns a note where the change has no effect.
+std::optional<std::string> follow(const Change& change, const Modules& modules, io::Step& step) {
   const bool is_all = change.kind == Change::Kind::kWithdraw && change.cell == agent::kEveryCell;
-  std::erase_if(step,
-                [&](const io::PlannedEntry& entry) { return is_all || entry.cell == change.cell; });
-  if (change.kind == Change::Kind::kPlan && !is_occupied(modules, change.cell)) {
-    step.emplace_back().cell = change.cell;
+  const std::size_t withdrawn = std::erase_if(
+      step, [&](const io::PlannedEntry& entry) { return is_all || entry.cell == change.cell; });
+  if (change.kind == Change::Kind::kWithdraw && withdrawn == 0) {
+    return is_all ? "there is no plan to withdraw when all are withdrawn"
+                  : fmt::format("there is no plan to withdraw at {} when it is withdrawn",
+                                model::text(change.cell));
   }
+  if (change.kind != Change::Kind::kPlan) {
+    return std::nullopt;
+  }
+  if (is_occupied(modules, change.cell)) {
+    return fmt::format("a module is at {} already when one is planned there: nothing is judged",
+                       model::text(change.cell));
+  }
+  step.emplace_back().cell = change.cell;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -43,6 +56,7 @@ base::Result<ChangedStructure> with_changes(const Structure& structure,
     document.steps.emplace_back();
   }
   io::Step& step = document.steps.front();
+  std::vector<std::string> warnings = structure.warnings;
   std::vector<sim::Announcement> announcements;
   std::vector<sim::Fault> attachments;
   for (const io::PlannedEntry& planned : step) {
@@ -70,7 +84,9 @@ base::Result<ChangedStructure> with_changes(const Structure& structure,
                                .cell = change.cell,
                                .is_withdrawal = change.kind == Change::Kind::kWithdraw});
     }
-    follow(change, document.modules, step);
+    if (auto note = follow(change, document.modules, step)) {
+      warnings.push_back(std::move(*note));
+    }
   }
   auto robot = io::make_robot(document);
   if (!robot) {
@@ -79,7 +95,7 @@ base::Result<ChangedStructure> with_changes(const Structure& structure,
   return ChangedStructure{.structure = {.name = structure.name,
                                         .document = std::move(document),
                                         .robot = std::move(robot).value(),
-                                        .warnings = structure.warnings,
+                                        .warnings = std::move(warnings),
                                         .origin = structure.origin},
                           .announcements = std::move(announcements),
                           .attachments = std::move(attachments)};

@@ -69,12 +69,14 @@ base::Result<Structure> load_text(std::string_view text, std::string_view name, 
                                                    : "before them"));
   }
   auto made = make_structure(std::move(document), name, thread_count);
-  if (made) {
-    Structure structure = std::move(made).value();
-    structure.warnings = std::move(warnings);
-    return structure;
+  if (!made) {
+    base::Error error = made.error();
+    error.notes = std::move(warnings);
+    return error;
   }
-  return made;
+  Structure structure = std::move(made).value();
+  structure.warnings = std::move(warnings);
+  return structure;
 }
 
 base::Result<Structure> load_file(const std::filesystem::path& path, int thread_count,

@@ -69,6 +69,22 @@ TEST(WithChanges, withdraws_all) {
   EXPECT_EQ(cells(changed.value().structure.robot, true), (Cells{{2, 0, 0}}));
 }
 
+/// A plan for a cell that is taken by then, or of nothing, is a mistake of whoever wrote it.
+TEST(WithChanges, notes_what_has_no_effect) {
+  const auto changed = with_changes(arm(), {{.kind = Kind::kPlan, .at = 1, .cell = {1, 0, 0}},
+                                            {.kind = Kind::kWithdraw, .at = 2, .cell = {3, 0, 0}},
+                                            {.kind = Kind::kWithdraw, .at = 3, .cell = {2, 1, 0}},
+                                            {.kind = Kind::kPlan, .at = 4, .cell = {3, 0, 0}},
+                                            {.kind = Kind::kAttach, .at = 5, .cell = {2, 0, 0}},
+                                            {.kind = Kind::kWithdraw, .at = 6, .cell = {2, 0, 0}}});
+  ASSERT_TRUE(changed);
+  const std::vector<std::string>& notes = changed.value().structure.warnings;
+  ASSERT_EQ(notes.size(), 3U);
+  EXPECT_NE(notes[0].find("(1,0,0)"), std::string::npos) << notes[0];
+  EXPECT_NE(notes[1].find("(3,0,0)"), std::string::npos) << notes[1];
+  EXPECT_NE(notes[2].find("(2,0,0)"), std::string::npos) << notes[2];
+}
+
 TEST(WithChanges, says_what_is_no_robot) {
   const auto twice = with_changes(arm(), {{.kind = Kind::kAttach, .at = 1, .cell = {1, 0, 0}}});
   ASSERT_FALSE(twice);

@@ -118,9 +118,9 @@ std::string load_text(const Reason& reason, Cells cells) {
     case ReasonCode::kSolutionsDisagree:
       return "stable, but " + several_text(n) + "; they do not agree whether anything breaks";
     case ReasonCode::kConnectionsBreak:
-      return fmt::format("{:.0f} of {} would break; the worst, {}, carries {} of its strength",
-                         n[0], counted(n[1], "connection"), connection_text(cells),
-                         beside_one(n[3], 4));
+      return fmt::format(
+          "{:.0f} of {} would break; the worst, {}, is loaded to {} % of its strength", n[0],
+          counted(n[1], "connection"), connection_text(cells), percentage(n[3], 2));
     case ReasonCode::kDisplacedMass:
       return fmt::format(
           "stable as a rigid body, but bending moves the centre of mass by {:.3g} mm, {:.3g} mm "
@@ -138,8 +138,8 @@ std::string load_text(const Reason& reason, Cells cells) {
           "its strength",
           rounded_up(n[0]));
     case ReasonCode::kHolds:
-      return fmt::format("stable; the worst connection, {}, carries {} of its strength",
-                         connection_text(cells), beside_one(n[1], 4));
+      return fmt::format("stable; the worst connection, {}, is loaded to {} % of its strength",
+                         connection_text(cells), percentage(n[1], 2));
     case ReasonCode::kSolutionsAgree:
       return several_text(n) + (n[0] < 2 ? "; both give this verdict" : "; all give this verdict");
     case ReasonCode::kAmbiguousFeet:

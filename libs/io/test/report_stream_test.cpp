@@ -233,7 +233,7 @@ TEST(Reason, is_told_with_its_numbers) {
             "beyond it");
   EXPECT_EQ(text(ReasonCode::kConnectionsBreak, {5, 25, 24, 1.0003}),
             "5 of 25 connections would break; the worst, " + model::ends_text(chain.robot, 24) +
-                ", carries 1.0003 of its strength");
+                ", is loaded to 100.03 % of its strength");
   EXPECT_EQ(text(ReasonCode::kNoKnownTension, {0.00012}),
             "stable, and no connection is known to be pulled apart: none carries more than 0.0002 "
             "of its strength");

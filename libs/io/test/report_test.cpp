@@ -244,13 +244,13 @@ TEST(Report, never_writes_one_for_a_ratio_below_one) {
   };
 
   // The chain carries 25 modules.
-  for (const auto& [strength, ratio] : {Case{1.00004, " 0.99996 "}, Case{1 + 4e-9, " 0.999999996 "},
-                                        Case{1, " 1.0000 "}, Case{1 - 4e-6, " 1.000004 "}}) {
+  for (const auto& [strength, ratio] : {Case{1.00004, " 99.996 "}, Case{1 + 4e-9, " 99.9999996 "},
+                                        Case{1, " 100.00 "}, Case{1 - 4e-6, " 100.0004 "}}) {
     model::RobotSpec spec = long_chain();
     spec.material.strength_vertical_n = 25 * model::module_weight_n(spec.material) * strength;
     const std::string text = write_report_text(Checked(spec).entry());
-    const bool is_one = std::string_view(ratio) == " 1.0000 ";
-    EXPECT_NE(text.find("carries" + std::string(ratio) + "of"), std::string::npos) << text;
+    const bool is_one = std::string_view(ratio) == " 100.00 ";
+    EXPECT_NE(text.find("is loaded to" + std::string(ratio) + "% of"), std::string::npos) << text;
     EXPECT_EQ(text.find("at 1.000 times") != std::string::npos, is_one) << text;
   }
 }

@@ -210,7 +210,7 @@ std::string order_way_text(const OrderReport& report) {
     groups.push_back(words(cells_of(report, order.steps[step])));
   }
   if (shown < count) {
-    groups.push_back(fmt::format("and {} more", count - shown));
+    groups.push_back(fmt::format("{} more", count - shown));
   }
   return fmt::format(
       "{}{}  written     nowhere: -o STEPS.json writes the order\n",

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "holdfast/base/check.hpp"
 
@@ -24,6 +25,7 @@ struct Error {
   ErrorCode code = ErrorCode::kBadInput;
   std::string message = {};
   std::string where = {};  ///< File, line, or path inside a document; may be empty.
+  std::vector<std::string> notes = {};  ///< What a reader had noted before it met the error.
 };
 
 /// The error of something that breaks a rule.

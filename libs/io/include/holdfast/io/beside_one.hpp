@@ -10,4 +10,8 @@ namespace holdfast::io {
 /// as 1.
 std::string beside_one(double number, int decimals);
 
+/// A share as a percentage, such as 120.04 for 1.2004: beside_one(share, decimals + 2) with its
+/// point moved, so that what holds never reads as 100.
+std::string percentage(double share, int decimals);
+
 }  // namespace holdfast::io
