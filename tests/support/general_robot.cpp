@@ -375,6 +375,61 @@ Direction turned(const base::Lattice& lattice, const Symmetry& symmetry, Directi
 
 }  // namespace
 
+namespace {
+
+/// Whether the first `count` cells hang together without the released pairs.
+bool is_in_one_piece(const model::RobotSpec& spec, const std::vector<Cell>& cells) {
+  std::set<Cell> left(cells.begin(), cells.end());
+  std::vector<Cell> reached = {cells.front()};
+  left.erase(cells.front());
+  for (std::size_t i = 0; i < reached.size(); ++i) {
+    for (const Direction direction : base::directions(spec.lattice)) {
+      const Cell next = base::neighbour(spec.lattice, reached[i], direction);
+      const auto is_pair = [&](const model::CellPair& pair) {
+        return pair == model::CellPair{reached[i], next} ||
+               pair == model::CellPair{next, reached[i]};
+      };
+      if (left.contains(next) && std::ranges::none_of(spec.released, is_pair)) {
+        left.erase(next);
+        reached.push_back(next);
+      }
+    }
+  }
+  return left.empty();
+}
+
+}  // namespace
+
+model::RobotSpec with_open_faces(model::RobotSpec spec, std::uint64_t seed) {
+  base::Rng rng(seed ^ 0x0fe4U);
+  std::vector<Cell> all = spec.existing;
+  all.insert(all.end(), spec.planned.begin(), spec.planned.end());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      for (const Direction direction : base::directions(spec.lattice)) {
+        if (base::neighbour(spec.lattice, all[i], direction) != all[k]) {
+          continue;
+        }
+        const std::uint64_t choice = rng.below(3);
+        if (choice == 0) {
+          spec.released.push_back({all[i], all[k]});
+          if (!is_in_one_piece(spec, spec.existing) || !is_in_one_piece(spec, all)) {
+            spec.released.pop_back();
+          }
+        } else if (choice == 1) {
+          const auto d = static_cast<std::size_t>(base::index(direction));
+          model::ConnectorLaw law =
+              spec.kinds.empty() ? model::default_kind(spec.material, spec.lattice).connectors[d]
+                                 : spec.kinds.front().connectors[d];
+          law.strength_n *= between(0.3, 3, rng);
+          spec.own_connectors.push_back({{all[i], all[k]}, law});
+        }
+      }
+    }
+  }
+  return spec;
+}
+
 model::RobotSpec turned(const model::RobotSpec& spec, const Symmetry& symmetry) {
   model::RobotSpec result = spec;
   const auto turn = [&](Cell& cell) { cell = symmetry(spec.lattice, cell); };
@@ -389,6 +444,12 @@ model::RobotSpec turned(const model::RobotSpec& spec, const Symmetry& symmetry) 
   }
   for (model::OwnKind& own : result.own_kinds) {
     turn(own.cell);
+  }
+  for (model::CellPair& pair : result.released) {
+    std::ranges::for_each(pair, turn);
+  }
+  for (model::OwnConnector& own : result.own_connectors) {
+    std::ranges::for_each(own.between, turn);
   }
   for (std::size_t k = 0; k < spec.kinds.size(); ++k) {
     for (const Direction direction : base::directions(spec.lattice)) {

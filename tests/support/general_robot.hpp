@@ -48,6 +48,10 @@ model::RobotSpec with_laws(model::RobotSpec spec, std::uint64_t seed);
 /// The robot with random friction at some of its obstacles and the floor.
 model::RobotSpec with_friction(model::RobotSpec spec, std::uint64_t seed);
 
+/// The robot with some pairs of neighbours that are not connected, as many as leave its existing
+/// modules, and all of them, in one piece, and with some connections that have a law of their own.
+model::RobotSpec with_open_faces(model::RobotSpec spec, std::uint64_t seed);
+
 /// All limits of its kinds' connectors times a factor, or without kinds the material's strengths.
 model::RobotSpec with_strengths_times(model::RobotSpec spec, double factor);
 

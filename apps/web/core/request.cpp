@@ -67,6 +67,17 @@ void take_own(const std::map<base::Cell, io::OwnParameters>& own, io::Document& 
   }
 }
 
+/// Takes away what is said of connections of modules that are there no more.
+void forget_absent_pairs(io::Document& document) {
+  const auto entries = entries_by_cell(document);
+  const auto is_absent = [&](const model::CellPair& pair) {
+    return !entries.contains(pair[0]) || !entries.contains(pair[1]);
+  };
+  std::erase_if(document.extension.open, is_absent);
+  std::erase_if(document.extension.connections,
+                [&](const io::ConnectionEntry& entry) { return is_absent(entry.between); });
+}
+
 /// Takes what the request says beyond cells and material.
 std::optional<base::Error> take_more(std::string_view more, io::Document& document) {
   io::Attributes obstacle_list = std::move(document.extension.obstacle_list);
@@ -85,6 +96,7 @@ std::optional<base::Error> take_more(std::string_view more, io::Document& docume
   document.extension = general.extension;
   document.extension.obstacle_list = std::move(obstacle_list);
   take_own(own_by_cell(general), document);
+  forget_absent_pairs(document);
   return std::nullopt;
 }
 

@@ -85,15 +85,6 @@ base::Result<model::RobotSpec> whole_of(const StepsFile& file, const io::Sequenc
   return whole;
 }
 
-template <class Item>
-void keep_of(std::vector<Item>& items, const std::vector<Item>& all, const Cells& existing,
-             const Cells& planned) {
-  items.clear();
-  std::ranges::copy_if(all, std::back_inserter(items), [&](const Item& item) {
-    return has(existing, item.cell) || has(planned, item.cell);
-  });
-}
-
 /// A simulated robot to which one thing happens after the other.
 class Follower {
  public:
@@ -205,9 +196,11 @@ class Run {
   std::optional<base::Error> note(StepChange change,
                                   const std::vector<sim::Announcement>& announcements,
                                   const std::vector<sim::Fault>& faults) {
-    keep_of(now_.own_kinds, whole_.own_kinds, now_.existing, now_.planned);
-    keep_of(now_.own_masses, whole_.own_masses, now_.existing, now_.planned);
-    keep_of(now_.payloads, whole_.payloads, now_.existing, now_.planned);
+    now_.own_kinds = whole_.own_kinds;
+    now_.own_masses = whole_.own_masses;
+    now_.own_connectors = whole_.own_connectors;
+    now_.payloads = whole_.payloads;
+    model::forget_absent(now_);
     const auto robot = model::Robot::create(now_);
     if (!robot) {
       return robot.error();

@@ -88,8 +88,9 @@ inline constexpr auto kTopKeys = std::to_array<std::string_view>(
      "planned", "later_steps", "known_answer", "visiblesim"});
 
 /// The keys that only version 2 has.
-inline constexpr auto kExtensionKeys = std::to_array<std::string_view>(
-    {"robot", "lattice", "floor", "gravity_m_s2", "kinds", "obstacles", "loads", "steps"});
+inline constexpr auto kExtensionKeys =
+    std::to_array<std::string_view>({"robot", "lattice", "floor", "gravity_m_s2", "kinds", "joined",
+                                     "open", "connections", "obstacles", "loads", "steps"});
 inline constexpr auto kAllTopKeys = joined(kTopKeys, kExtensionKeys);
 inline constexpr auto kOwnParameterKeys = std::to_array<std::string_view>({"kind", "mass_kg"});
 /// The keys of many modules in one entry.
@@ -117,6 +118,12 @@ inline constexpr auto kKindKeys = joined(
 
 /// Names of how bending moments about two axes count together, by model::BendingLaw.
 inline constexpr auto kBendingNames = std::to_array<std::string_view>({"square", "round"});
+/// The keys of a connection that a file names.
+inline constexpr std::string_view kBetweenKey = "between";
+inline constexpr auto kConnectionKeys =
+    joined(std::to_array<std::string_view>({kBetweenKey}), kConnectorKeys);
+/// Which neighbours are joined: all but the open ones, or those alone that "connections" lists.
+inline constexpr auto kJoinedNames = std::to_array<std::string_view>({"all", "listed"});
 inline constexpr auto kFloorKeys = std::to_array<std::string_view>({"friction"});
 inline constexpr auto kObstacleKeys =
     std::to_array<std::string_view>({"from", "to", "cells", "hold", "friction", "color"});

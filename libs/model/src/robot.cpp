@@ -154,11 +154,12 @@ std::optional<std::string> Robot::take(const RobotSpec& spec, int thread_count, 
   if (!fault && extent == Extent::kWhole) {
     fault = find_connection_fault(connections(), modules_, spec.existing.size());
     if (fault && released_count_ > 0) {
-      *fault += fmt::format("; the faces of {} released pairs do not count", released_count_);
+      *fault += fmt::format("; the faces of {} open pairs do not count", released_count_);
     }
   }
   fault = fault ? fault : touch(spec);
   fault = fault ? fault : take_kinds(spec, index);
+  fault = fault ? fault : take_own_connectors(spec, index);
   return fault ? fault : take_loads(spec, index);
 }
 
@@ -284,6 +285,49 @@ std::optional<std::string> Robot::take_kinds(const RobotSpec& spec, const CellIn
     }
   }
   return std::nullopt;
+}
+
+std::optional<std::string> Robot::take_own_connectors(const RobotSpec& spec,
+                                                      const CellIndex& index) {
+  has_default_connectors_ = has_default_connectors_ && spec.own_connectors.empty();
+  for (const OwnConnector& own : spec.own_connectors) {
+    const auto direction = direction_between(lattice_, own.between);
+    const std::int32_t a = index.find(own.between[0]);
+    const std::int32_t b = index.find(own.between[1]);
+    const bool is_pair = direction && a != CellIndex::kNone && b != CellIndex::kNone;
+    if (!is_pair || connected_[base::at(a)][base::at(base::index(*direction))] == kNoNeighbour) {
+      return fmt::format("the pair {}-{} has a law of its own, but is not connected",
+                         text(own.between[0]), text(own.between[1]));
+    }
+    const bool is_first = base::index(*direction) % 2 == 0;
+    const auto along = base::at(base::index(is_first ? *direction : base::opposite(*direction)));
+    own_connectors_.emplace_back(base::at(is_first ? a : b) * lattice_count() + along,
+                                 connectors_.size());
+    connectors_.push_back(own.law);
+  }
+  std::ranges::sort(own_connectors_);
+  const auto twice =
+      std::ranges::adjacent_find(own_connectors_, {}, [](const auto& own) { return own.first; });
+  if (twice != own_connectors_.end()) {
+    const CellPair& pair =
+        spec.own_connectors[twice->second + spec.own_connectors.size() - connectors_.size()]
+            .between;
+    return fmt::format("the pair {}-{} has two laws of its own, expected one", text(pair[0]),
+                       text(pair[1]));
+  }
+  return std::nullopt;
+}
+
+const ConnectorLaw* Robot::find_own_connector(const Connection& connection) const {
+  const bool is_first = base::index(connection.direction) % 2 == 0;
+  const auto along =
+      base::at(base::index(is_first ? connection.direction : base::opposite(connection.direction)));
+  const std::size_t place =
+      base::at(is_first ? connection.a : connection.b) * lattice_count() + along;
+  const auto found = std::ranges::lower_bound(own_connectors_, place, {},
+                                              [](const auto& own) { return own.first; });
+  return found != own_connectors_.end() && found->first == place ? &connectors_[found->second]
+                                                                 : nullptr;
 }
 
 std::optional<std::string> Robot::take_loads(const RobotSpec& spec, const CellIndex& index) {

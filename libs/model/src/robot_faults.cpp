@@ -224,6 +224,9 @@ std::optional<std::string> find_number_fault(const RobotSpec& spec) {
   for (std::size_t i = 0; !fault && i < spec.released.size(); ++i) {
     fault = find_coordinate_fault(spec.released[i]);
   }
+  for (std::size_t i = 0; !fault && i < spec.own_connectors.size(); ++i) {
+    fault = find_coordinate_fault(spec.own_connectors[i].between);
+  }
   return fault ? fault : find_general_fault(spec);
 }
 

@@ -22,6 +22,7 @@ namespace holdfast::model {
 namespace {
 
 using base::Cell;
+using base::Direction;
 using base::kCoordinateMax;
 
 std::vector<Cell> box(std::int32_t a, std::int32_t b, std::int32_t c, const Cell& corner = {}) {
@@ -178,9 +179,9 @@ TEST(Robot, releases_only_connections_and_each_once) {
   expect_error({.existing = row, .released = {first, {row[1], row[0]}}},
                {"(1,0,0)-(0,0,0) is released twice"});
   expect_error({.existing = row, .released = {first}},
-               {"not connected: 2 of 3 modules", "faces of 1 released pairs do not count"});
+               {"not connected: 2 of 3 modules", "faces of 1 open pairs do not count"});
   expect_error({.existing = {row[0]}, .planned = {row[1]}, .released = {first}},
-               {"planned cell (1,0,0)", "released pairs do not count"});
+               {"planned cell (1,0,0)", "open pairs do not count"});
   // A released neighbour is still in the way.
   expect_error({.existing = {{0, 0, 0}, {1, 0, 0}, {1, 0, -1}, {0, 0, -1}},
                 .fixed = {{1, 0, 0}},
@@ -297,6 +298,45 @@ TEST(Robot, names_the_ends_of_a_connection) {
   ASSERT_TRUE(robot.has_value());
   EXPECT_EQ(ends(robot.value(), 0), (std::array{Cell{2, 1, -2}, Cell{3, 1, -2}}));
   EXPECT_EQ(ends_text(robot.value(), 0), "(2,1,-2)-(3,1,-2)");
+}
+
+/// The law counts whichever of the two modules is asked from, and no other pair has it.
+TEST(Robot, has_laws_of_single_connections) {
+  RobotSpec spec{.existing = {{2, 0, 0}, {1, 0, 0}, {0, 0, 0}}, .fixed = {{0, 0, 0}}};
+  ConnectorLaw law = default_kind(spec.material, spec.lattice).connectors[0];
+  law.strength_n = 3;
+  spec.own_connectors = {{{Cell{1, 0, 0}, Cell{2, 0, 0}}, law}};
+  const auto robot = Robot::create(spec);
+  ASSERT_TRUE(robot.has_value()) << robot.error().message;
+  EXPECT_EQ(robot.value().connector({.a = 1, .b = 0, .direction = Direction::kPlusX}).strength_n,
+            3);
+  EXPECT_EQ(robot.value().connector({.a = 0, .b = 1, .direction = Direction::kMinusX}).strength_n,
+            3);
+  EXPECT_EQ(robot.value().connector({.a = 2, .b = 1, .direction = Direction::kPlusX}).strength_n,
+            spec.material.strength_lateral_n);
+  EXPECT_FALSE(robot.value().has_default_connectors());
+  spec.own_connectors.push_back({{Cell{2, 0, 0}, Cell{1, 0, 0}}, law});
+  expect_error(spec, {"(2,0,0)-(1,0,0) has two laws of its own"});
+  spec.own_connectors.back().between = {Cell{0, 0, 0}, Cell{2, 0, 0}};
+  expect_error(spec, {"(0,0,0)-(2,0,0) has a law of its own, but is not connected"});
+}
+
+TEST(ForgetAbsent, takes_away_what_is_said_of_no_module) {
+  RobotSpec spec{.existing = {{0, 0, 0}}, .planned = {{1, 0, 0}}, .fixed = {{0, 0, 0}, {5, 0, 0}}};
+  const CellPair there = {Cell{0, 0, 0}, Cell{1, 0, 0}};
+  const CellPair half = {Cell{1, 0, 0}, Cell{2, 0, 0}};
+  spec.released = {half, there};
+  spec.own_connectors = {{there, {}}, {half, {}}};
+  spec.own_masses = {{{2, 0, 0}, 1}, {{1, 0, 0}, 2}};
+  spec.payloads = {{.cell = {3, 0, 0}}};
+  forget_absent(spec);
+  EXPECT_EQ(spec.fixed, (std::vector<Cell>{{0, 0, 0}}));
+  EXPECT_EQ(spec.released, (std::vector<CellPair>{there}));
+  ASSERT_EQ(spec.own_connectors.size(), 1U);
+  EXPECT_EQ(spec.own_connectors[0].between, there);
+  ASSERT_EQ(spec.own_masses.size(), 1U);
+  EXPECT_EQ(spec.own_masses[0].mass_kg, 2);
+  EXPECT_TRUE(spec.payloads.empty());
 }
 
 TEST(Robot, fixes_only_existing_modules) {

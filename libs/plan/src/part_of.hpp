@@ -7,9 +7,6 @@
 
 namespace holdfast::plan {
 
-/// Takes away what a spec says of modules that it does not have.
-void forget_absent(model::RobotSpec& spec);
-
 /// What remains of a spec if only these of its modules are there.
 model::RobotSpec part_of(const model::RobotSpec& spec, const ElementSet& modules);
 

@@ -135,6 +135,18 @@ TEST(Candidates, are_judged_so_in_every_lattice_with_supports_and_loads_of_every
   }
 }
 
+TEST(Candidates, are_judged_so_where_faces_are_open_and_connections_have_their_own_laws) {
+  std::size_t released_count = 0;
+  for (const base::Lattice& lattice : test::kLattices) {
+    for (std::uint64_t seed = 0; seed < test::campaign(12U, 3U); ++seed) {
+      const RobotSpec spec = test::with_open_faces(test::general_robot(lattice, seed), seed);
+      released_count += spec.released.size();
+      compare(spec, "open faces " + std::to_string(seed), 3);
+    }
+  }
+  EXPECT_GT(released_count, test::campaign(40U, 4U));
+}
+
 /// Frees a general robot of all supports and stands it on a floor in its lowest layer.
 RobotSpec on_floor(RobotSpec spec) {
   spec.obstacles.clear();

@@ -280,7 +280,7 @@ void keep_own(std::vector<Entry>& list, const std::map<base::Cell, bool>& is_own
 /// Removes from a spec what is said of modules that this rank does not have.
 void restrict(const std::vector<Record>& records, std::size_t own_count, model::RobotSpec& spec) {
   if (spec.own_kinds.empty() && spec.own_masses.empty() && spec.payloads.empty() &&
-      spec.carried.empty() && spec.released.empty()) {
+      spec.carried.empty() && spec.released.empty() && spec.own_connectors.empty()) {
     return;
   }
   std::map<base::Cell, bool> is_own;
@@ -292,9 +292,12 @@ void restrict(const std::vector<Record>& records, std::size_t own_count, model::
   keep_own(spec.own_masses, is_own, true, cell);
   keep_own(spec.payloads, is_own, true, cell);
   keep_own(spec.carried, is_own, false, [](const auto& entry) { return entry.carrier; });
-  std::erase_if(spec.released, [&](const model::CellPair& pair) {
+  const auto is_foreign = [&](const model::CellPair& pair) {
     return !is_own.contains(pair[0]) || !is_own.contains(pair[1]);
-  });
+  };
+  std::erase_if(spec.released, is_foreign);
+  std::erase_if(spec.own_connectors,
+                [&](const model::OwnConnector& own) { return is_foreign(own.between); });
 }
 
 /// The first fault that any rank has found.

@@ -59,17 +59,6 @@ ConnectorParameter parameter(JsonReading& reading, const std::string& key, const
   return list;
 }
 
-/// Reads one of kConnectorKeys.
-void read_connector_parameter(JsonReading& reading, const std::string& key, const Json& value,
-                              const JsonPlace& place, Connectors& connectors) {
-  if (key == kBendingKey) {
-    connectors.bending =
-        static_cast<model::BendingLaw>(read_choice(reading, value, place, kBendingNames));
-  } else {
-    connectors.parameters.push_back(parameter(reading, key, value, place));
-  }
-}
-
 void check_pair_lists_of(JsonReading& reading, const Connectors& connectors,
                          const JsonPlace& place) {
   const base::Lattice& lattice = reading.document.extension.lattice;
@@ -85,6 +74,16 @@ void check_pair_lists_of(JsonReading& reading, const Connectors& connectors,
 }
 
 }  // namespace
+
+void read_connector_parameter(JsonReading& reading, const std::string& key, const Json& value,
+                              const JsonPlace& place, Connectors& connectors) {
+  if (key == kBendingKey) {
+    connectors.bending =
+        static_cast<model::BendingLaw>(read_choice(reading, value, place, kBendingNames));
+  } else {
+    connectors.parameters.push_back(parameter(reading, key, value, place));
+  }
+}
 
 double read_not_negative(JsonReading& reading, const Json& value, const JsonPlace& place) {
   const double number = reading.number(value, place);
@@ -166,6 +165,10 @@ void check_pair_lists(JsonReading& reading) {
   const JsonPlace kinds = top.at("kinds");
   for (const KindEntry& kind : extension.kinds) {
     check_pair_lists_of(reading, kind.connectors, kinds.at(kind.name));
+  }
+  const JsonPlace connections = top.at("connections");
+  for (std::size_t i = 0; i < extension.connections.size(); ++i) {
+    check_pair_lists_of(reading, extension.connections[i].connectors, connections.at(i));
   }
 }
 

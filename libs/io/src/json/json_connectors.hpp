@@ -21,6 +21,10 @@ void read_material_extension(JsonReading& reading, const std::string& key, const
 KindEntry read_kind(JsonReading& reading, const std::string& name, const Json& value,
                     const JsonPlace& place);
 
+/// Reads one of kConnectorKeys.
+void read_connector_parameter(JsonReading& reading, const std::string& key, const Json& value,
+                              const JsonPlace& place, Connectors& connectors);
+
 /// A failure if an object of the material or a kind says the strength of a direction twice.
 void expect_one_strength(JsonReading& reading, const Json& value, const JsonPlace& place);
 

@@ -64,19 +64,19 @@ std::vector<Cell> cells(JsonReading& reading, const Json& value, const JsonPlace
   return list_of(reading, value, place, cell);
 }
 
+model::CellPair pair(JsonReading& reading, const Json& value, const JsonPlace& place) {
+  const std::vector<Cell> ends = cells(reading, value, place);
+  if (ends.size() != 2) {
+    reading.fail(place,
+                 fmt::format("expected the two cells of a connection, found {}", ends.size()));
+    return {};
+  }
+  return {ends[0], ends[1]};
+}
+
 std::vector<model::CellPair> pairs(JsonReading& reading, const Json& value,
                                    const JsonPlace& place) {
-  std::vector<model::CellPair> list;
-  for_each_element(reading, value, place, [&](const Json& element, const JsonPlace& here) {
-    const std::vector<Cell> ends = cells(reading, element, here);
-    if (ends.size() == 2) {
-      list.push_back({ends[0], ends[1]});
-    } else {
-      reading.fail(here,
-                   fmt::format("expected the two cells of a connection, found {}", ends.size()));
-    }
-  });
-  return list;
+  return list_of(reading, value, place, pair);
 }
 
 /// A failure if an object lacks a key that it must have.
@@ -128,6 +128,35 @@ void read_kinds(JsonReading& reading, const Json& value, const JsonPlace& place)
     }
     reading.document.extension.kinds.push_back(read_kind(reading, name, member, here));
   }
+}
+
+void read_joined(JsonReading& reading, const Json& value, const JsonPlace& place) {
+  reading.document.extension.joins_listed = read_choice(reading, value, place, kJoinedNames) == 1;
+}
+
+void read_open(JsonReading& reading, const Json& value, const JsonPlace& place) {
+  reading.document.extension.open = pairs(reading, value, place);
+}
+
+ConnectionEntry connection(JsonReading& reading, const Json& value, const JsonPlace& place) {
+  ConnectionEntry entry;
+  demand(reading, value, place, kBetweenKey);
+  for (const auto& [key, member] :
+       reading.members(value, place, "an object such as {\"between\": [[0,0,0], [0,0,1]]}")) {
+    const JsonPlace here = place.at(key);
+    if (key == kBetweenKey) {
+      entry.between = pair(reading, member, here);
+    } else if (std::ranges::find(kConnectorKeys, key) != kConnectorKeys.end()) {
+      read_connector_parameter(reading, key, member, here, entry.connectors);
+    } else {
+      reading.note_unknown_key(here, kConnectionKeys);
+    }
+  }
+  return entry;
+}
+
+void read_connections(JsonReading& reading, const Json& value, const JsonPlace& place) {
+  reading.document.extension.connections = list_of(reading, value, place, connection);
 }
 
 struct ColoredObstacle {
@@ -269,8 +298,8 @@ std::string own_place(const OwnParameters& own) {
 
 /// The readers of kExtensionKeys, in their order.
 constexpr void (*kReaders[])(JsonReading&, const Json&, const JsonPlace&) = {
-    pass_over,  pass_over,      read_floor, read_gravity,
-    read_kinds, read_obstacles, read_loads, read_steps};
+    pass_over, pass_over,        read_floor,     read_gravity, read_kinds, read_joined,
+    read_open, read_connections, read_obstacles, read_loads,   read_steps};
 static_assert(std::size(kReaders) == kExtensionKeys.size());
 
 }  // namespace

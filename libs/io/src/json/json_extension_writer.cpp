@@ -152,6 +152,19 @@ void add_kind_members(Items& members, const Extension& extension) {
   }
 }
 
+void add_connection_members(Items& members, const Extension& extension) {
+  if (extension.joins_listed) {
+    members.push_back(member("joined", name_text(kJoinedNames[1])));
+  }
+  add_list(members, "open", extension.open,
+           [](const model::CellPair& pair) { return json_text(std::span(pair)); });
+  add_list(members, "connections", extension.connections, [](const ConnectionEntry& entry) {
+    Items items = {member(kBetweenKey, json_text(std::span(entry.between)))};
+    add_connector_members(items, entry.connectors);
+    return object(items);
+  });
+}
+
 void add_obstacle_members(Items& members, const Extension& extension) {
   Items items;
   for (std::size_t i = 0; i < extension.obstacles.size(); ++i) {
@@ -188,6 +201,7 @@ std::string extension_text(const Extension& extension) {
     members.push_back(member("material", object(material)));
   }
   add_kind_members(members, extension);
+  add_connection_members(members, extension);
   add_plan_members(members, extension);
   return members.empty() ? std::string() : object(members);
 }

@@ -58,6 +58,7 @@ void add_setting_members(Items& members, const Extension& extension,
                          const base::Lattice& default_lattice);
 void add_kind_members(Items& members, const Extension& extension);
 void add_obstacle_members(Items& members, const Extension& extension);
+void add_connection_members(Items& members, const Extension& extension);
 void add_plan_members(Items& members, const Extension& extension);
 
 /// Members of the material that only version 2 has.

@@ -198,6 +198,7 @@ std::string write_json(const Document& document) {
     members.push_back(member("material", object(material, 2)));
   }
   add_kind_members(members, extension);
+  add_connection_members(members, extension);
   members.push_back(member("modules", cell_list(document.modules, 2, own_of(extension, 0))));
   add_steps(members, document);
   add_obstacle_members(members, extension);

@@ -11,6 +11,7 @@
 #include "holdfast/io/document.hpp"
 #include "holdfast/io/lattice_names.hpp"
 #include "holdfast/model/robot_catalogue.hpp"
+#include "json/connection_spec.hpp"
 #include "json/json_values.hpp"
 #include "robot_defaults.hpp"
 #include "text_input.hpp"
@@ -20,56 +21,9 @@
 namespace holdfast::io {
 namespace {
 
-using model::ConnectorLaw;
-
-/// The member of a law that a parameter sets; friction, which may be none, is not among them.
-struct LawMember {
-  std::string_view key;
-  double ConnectorLaw::*value;
-  std::optional<base::ConnectorClass> only = {};
-};
-
-constexpr LawMember kLawMembers[] = {
-    {kClassStrengthKeys[0], &ConnectorLaw::strength_n, base::ConnectorClass::kVertical},
-    {kClassStrengthKeys[1], &ConnectorLaw::strength_n, base::ConnectorClass::kLateral},
-    {"strength_n", &ConnectorLaw::strength_n},
-    {"lever_mm", &ConnectorLaw::lever_mm},
-    {"shear_strength_n", &ConnectorLaw::shear_strength_n},
-    {"torsion_strength_nmm", &ConnectorLaw::torsion_strength_nmm},
-    {"torsion_radius_mm", &ConnectorLaw::torsion_radius_mm},
-    {"gap_limit_mm", &ConnectorLaw::gap_limit_mm}};
-
-void set(ConnectorLaw& law, std::string_view key, double value, base::ConnectorClass direction) {
-  if (key == "friction") {
-    law.friction = std::isinf(value) ? std::nullopt : std::optional(value);
-    return;
-  }
-  const auto* const member = std::ranges::find(kLawMembers, key, &LawMember::key);
-  if (member != std::end(kLawMembers) && member->only.value_or(direction) == direction) {
-    law.*member->value = value;
-  }
-}
-
-/// The value of a parameter for a direction; none if it has none.
-std::optional<double> value_for(const ConnectorParameter& parameter, std::size_t direction,
-                                base::ConnectorClass direction_class) {
-  const std::size_t index = parameter.spread == Spread::kAll ? 0
-                            : parameter.spread == Spread::kClasses
-                                ? static_cast<std::size_t>(direction_class)
-                                : direction / 2;
-  return index < parameter.values.size() ? parameter.values[index] : std::nullopt;
-}
-
 void apply(const Connectors& connectors, const base::Lattice& lattice, model::ModuleKind& kind) {
   for (std::size_t d = 0; d < kind.connectors.size(); ++d) {
-    ConnectorLaw& law = kind.connectors[d];
-    const base::ConnectorClass direction_class = lattice.connector_class[d];
-    for (const ConnectorParameter& parameter : connectors.parameters) {
-      if (const auto value = value_for(parameter, d, direction_class)) {
-        set(law, parameter.key, *value, direction_class);
-      }
-    }
-    law.bending = connectors.bending.value_or(law.bending);
+    apply(connectors, lattice, d, kind.connectors[d]);
   }
 }
 
@@ -128,6 +82,10 @@ std::optional<base::Error> find_fault(const Document& document) {
                place.at("mass_kg").pointer()};
     }
     fault = fault ? fault : find_fault(kind.connectors, place);
+  }
+  const JsonPlace connections = top.at("connections");
+  for (std::size_t i = 0; !fault && i < extension.connections.size(); ++i) {
+    fault = find_fault(extension.connections[i].connectors, connections.at(i));
   }
   return fault;
 }
@@ -314,6 +272,14 @@ base::Result<model::RobotSpec> make_spec(const Document& document) {
   if (auto error = add_own(document, kinds, lists)) {
     return *std::move(error);
   }
+  std::set<base::Cell> cells;
+  if (has_connections(document)) {
+    cells.insert(spec.existing.begin(), spec.existing.end());
+    cells.insert(spec.planned.begin(), spec.planned.end());
+  }
+  if (auto error = add_connections(document, kinds, cells, spec)) {
+    return *std::move(error);
+  }
   if (!spec.own_kinds.empty() || has_kinds(document)) {
     spec.kinds = std::move(kinds);
   }
@@ -365,6 +331,9 @@ base::Result<Sequence> make_sequence(const Document& document) {
     return std::optional(OwnLists{attaching.own_kinds, attaching.own_masses});
   };
   if (auto error = add_own(document, kinds, lists)) {
+    return *std::move(error);
+  }
+  if (auto error = add_connections(document, kinds, cells_of(document), sequence.start)) {
     return *std::move(error);
   }
   const bool is_any_special = !sequence.start.own_kinds.empty() ||

@@ -143,7 +143,7 @@ class RemedySearch {
     model::RobotSpec changed = spec_;
     std::erase(changed.existing, cell);
     std::erase(changed.planned, cell);
-    forget_absent(changed);
+    model::forget_absent(changed);
     return changed;
   }
 

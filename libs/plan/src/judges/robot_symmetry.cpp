@@ -13,7 +13,8 @@ using base::Cell;
 bool is_plain(const model::RobotSpec& spec) {
   return spec.lattice == base::kCubic && spec.released.empty() && spec.obstacles.empty() &&
          !spec.gravity_m_s2 && spec.kinds.empty() && spec.own_kinds.empty() &&
-         spec.own_masses.empty() && spec.payloads.empty() && spec.carried.empty();
+         spec.own_masses.empty() && spec.own_connectors.empty() && spec.payloads.empty() &&
+         spec.carried.empty();
 }
 
 /// Whether beams bend alike about both axes of their section, so that x and y are alike.

@@ -232,7 +232,9 @@ base::Result<StepJudgement> judge_step(const RobotState& before, const model::St
 base::Result<SequenceJudgement> judge_sequence(const model::RobotSpec& start,
                                                std::span<const model::Step> steps,
                                                const SequenceOptions& options) {
-  const auto robot = model::Robot::create(start, options.solver.thread_count);
+  model::RobotSpec before = start;
+  model::forget_absent_pairs(before);  // Of modules that come later.
+  const auto robot = model::Robot::create(before, options.solver.thread_count);
   if (!robot) {
     return robot.error();
   }

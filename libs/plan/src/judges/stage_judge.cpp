@@ -115,7 +115,8 @@ bool is_final(const model::Robot& robot, const verdict::Assessment& assessment) 
 /// Whether two robots with the same surroundings are the same.
 bool is_same(const model::RobotSpec& a, const model::RobotSpec& b) {
   return a.existing == b.existing && a.fixed == b.fixed && a.released == b.released &&
-         a.own_kinds == b.own_kinds && a.own_masses == b.own_masses && a.payloads == b.payloads;
+         a.own_kinds == b.own_kinds && a.own_masses == b.own_masses &&
+         a.own_connectors == b.own_connectors && a.payloads == b.payloads;
 }
 
 }  // namespace

@@ -34,7 +34,11 @@ std::optional<base::Error> find_robot_fault(const MoveTask& task, const model::R
   }
   if (!spec.released.empty()) {
     return base::bad_input(
-        fmt::format("{} has released pairs; all neighbours must be connected", which));
+        fmt::format("{} has open faces between neighbours; all must be connected", which));
+  }
+  if (!spec.own_connectors.empty()) {
+    return base::bad_input(fmt::format(
+        "{} has connections with laws of their own, which stay with no module that moves", which));
   }
   const auto robot = model::Robot::create(spec);
   if (!robot) {

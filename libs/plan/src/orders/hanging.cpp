@@ -102,8 +102,11 @@ model::LimitRatio ratio_of(const RobotState& robot, const Group& group, std::siz
                                dot(load.torque_nmm, frame[1]), dot(load.torque_nmm, frame[2])};
   const model::ModuleKind& held = robot.kind(robot.find(group.from[joint.member]));
   const model::ModuleKind& holding = robot.kind(robot.find(carrier));
-  const auto law = model::weaker(holding.connectors[direction], held.connectors[direction ^ 1U]);
-  return model::load_ratio(law, middle);
+  const model::ConnectorLaw* const own = robot.own_connector(carrier, group.from[joint.member]);
+  return model::load_ratio(own != nullptr ? *own
+                                          : model::weaker(holding.connectors[direction],
+                                                          held.connectors[direction ^ 1U]),
+                           middle);
 }
 
 }  // namespace

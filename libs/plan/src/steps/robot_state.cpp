@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -114,6 +115,14 @@ RobotState::RobotState(const model::RobotSpec& spec)
   for (const model::CellPair& pair : spec.released) {
     release(pair);
   }
+  for (const model::OwnConnector& own : spec.own_connectors) {
+    own_connectors_[ordered(own.between)] = own.law;
+  }
+}
+
+const model::ConnectorLaw* RobotState::own_connector(const Cell& a, const Cell& b) const {
+  const auto found = own_connectors_.find(ordered({a, b}));
+  return found == own_connectors_.end() ? nullptr : &found->second;
 }
 
 std::array<double, 3> RobotState::gravity() const {
@@ -144,7 +153,9 @@ void RobotState::remove(const Cell& cell) {
   modules_[static_cast<std::size_t>(found->second)].is_there = false;
   free_.push_back(found->second);
   index_.erase(found);
-  std::erase_if(released_, [&](const auto& pair) { return pair[0] == cell || pair[1] == cell; });
+  const auto is_of_cell = [&](const auto& pair) { return pair[0] == cell || pair[1] == cell; };
+  std::erase_if(released_, is_of_cell);
+  std::erase_if(own_connectors_, [&](const auto& own) { return is_of_cell(own.first); });
 }
 
 void RobotState::release(const model::CellPair& pair) { released_.insert(ordered(pair)); }
@@ -153,18 +164,31 @@ void RobotState::connect(const model::CellPair& pair) { released_.erase(ordered(
 
 void RobotState::move(std::span<const Cell> from, std::span<const Cell> to) {
   const auto place_of = [&](const Cell& cell) { return std::ranges::find(from, cell); };
-  std::set<model::CellPair> released;
-  for (const model::CellPair& pair : released_) {
+  // A pair stays one if both of its modules move, or neither does.
+  const auto moved_pair = [&](const model::CellPair& pair) -> std::optional<model::CellPair> {
     const auto a = place_of(pair[0]);
     const auto b = place_of(pair[1]);
-    if (a != from.end() && b != from.end()) {
-      released.insert(ordered({to[static_cast<std::size_t>(a - from.begin())],
-                               to[static_cast<std::size_t>(b - from.begin())]}));
-    } else if (a == from.end() && b == from.end()) {
-      released.insert(pair);
+    if ((a == from.end()) != (b == from.end())) {
+      return std::nullopt;
+    }
+    return a == from.end() ? pair
+                           : ordered({to[static_cast<std::size_t>(a - from.begin())],
+                                      to[static_cast<std::size_t>(b - from.begin())]});
+  };
+  std::set<model::CellPair> released;
+  for (const model::CellPair& pair : released_) {
+    if (const auto moved = moved_pair(pair)) {
+      released.insert(*moved);
     }
   }
   released_ = std::move(released);
+  std::map<model::CellPair, model::ConnectorLaw> own_connectors;
+  for (const auto& [pair, law] : own_connectors_) {
+    if (const auto moved = moved_pair(pair)) {
+      own_connectors[*moved] = law;
+    }
+  }
+  own_connectors_ = std::move(own_connectors);
   std::vector<std::int32_t> moved;
   for (const Cell& cell : from) {
     moved.push_back(index_.at(cell));
@@ -197,7 +221,7 @@ model::RobotSpec RobotState::spec(std::span<const std::int32_t> modules,
       spec.payloads.back().cell = found.cell;
     }
   }
-  if (released_.empty() && more.empty()) {
+  if (released_.empty() && own_connectors_.empty() && more.empty()) {
     return spec;
   }
   std::set<model::CellPair> released = released_;
@@ -205,9 +229,13 @@ model::RobotSpec RobotState::spec(std::span<const std::int32_t> modules,
     released.insert(ordered(pair));
   }
   const std::set<Cell> cells(spec.existing.begin(), spec.existing.end());
-  for (const model::CellPair& pair : released) {
-    if (cells.contains(pair[0]) && cells.contains(pair[1])) {
-      spec.released.push_back(pair);
+  const auto are_there = [&](const model::CellPair& pair) {
+    return cells.contains(pair[0]) && cells.contains(pair[1]);
+  };
+  std::ranges::copy_if(released, std::back_inserter(spec.released), are_there);
+  for (const auto& [pair, law] : own_connectors_) {
+    if (are_there(pair) && !released.contains(pair)) {
+      spec.own_connectors.push_back({pair, law});
     }
   }
   return spec;

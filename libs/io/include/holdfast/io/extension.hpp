@@ -54,6 +54,14 @@ struct KindEntry {
   friend bool operator==(const KindEntry&, const KindEntry&) = default;
 };
 
+/// A connection that a file names, with what it says of it.
+struct ConnectionEntry {
+  model::CellPair between;
+  Connectors connectors;  ///< What differs from the weaker of its two modules' connectors.
+
+  friend bool operator==(const ConnectionEntry&, const ConnectionEntry&) = default;
+};
+
 /// The parameters that an existing or planned module has of its own. They are kept apart from the
 /// modules, as most have none.
 struct OwnParameters {
@@ -76,7 +84,11 @@ struct Extension {
   Connectors connectors;                              ///< Of all modules.
   std::optional<double> foot_mm;  ///< Width of the facets of modules that are no cubes.
   std::vector<KindEntry> kinds;
-  std::vector<OwnParameters> own;  ///< By ascending step, then module.
+  std::vector<OwnParameters> own;     ///< By ascending step, then module.
+  std::vector<model::CellPair> open;  ///< Neighbours whose faces touch without being joined.
+  std::vector<ConnectionEntry> connections;
+  bool joins_listed =
+      false;  ///< Whether `connections` are all that there are of the file's modules.
   std::vector<model::Obstacle> obstacles;
   std::vector<std::optional<Color>> obstacle_colors;  ///< By obstacle; empty if none has one.
   Attributes obstacle_list;                           ///< Of VisibleSim's <obstacleList>.

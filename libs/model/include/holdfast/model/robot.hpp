@@ -81,6 +81,14 @@ struct OwnKind {
   friend bool operator==(const OwnKind&, const OwnKind&) = default;
 };
 
+/// The law of a single connection, in place of the weaker of its two modules' connectors.
+struct OwnConnector {
+  CellPair between;  ///< Modules in neighbouring cells, existing or planned, in either order.
+  ConnectorLaw law;
+
+  friend bool operator==(const OwnConnector&, const OwnConnector&) = default;
+};
+
 /// A force and a torque at a module's node besides its weight, global frame.
 struct Payload {
   base::Cell cell;
@@ -122,9 +130,16 @@ struct RobotSpec {
   std::vector<ModuleKind> kinds = {};    ///< Empty: default_kind() alone, which all modules are of.
   std::vector<OwnKind> own_kinds = {};   ///< All others are of kind 0.
   std::vector<OwnMass> own_masses = {};  ///< All others weigh what their kind does.
+  std::vector<OwnConnector> own_connectors = {};  ///< No pair twice, and none that is released.
   std::vector<Payload> payloads = {};
   std::vector<CarriedMass> carried = {};
 };
+
+/// Takes away what a spec says of modules that it does not have.
+void forget_absent(RobotSpec& spec);
+
+/// Takes away what a spec says of pairs of which it does not have both modules.
+void forget_absent_pairs(RobotSpec& spec);
 
 /// A robot that can be computed: connected, supported, no two modules in one cell. Immutable.
 class Robot {
@@ -203,8 +218,13 @@ class Robot {
 
   std::span<const ModuleKind> kinds() const { return kinds_; }
 
-  /// The law of a connection, which is the weaker of its two modules' connectors.
+  /// The law of a connection: its own, or the weaker of its two modules' connectors.
   const ConnectorLaw& connector(const Connection& connection) const {
+    if (!own_connectors_.empty()) {
+      if (const ConnectorLaw* const own = find_own_connector(connection)) {
+        return *own;
+      }
+    }
     return connector(modules_[static_cast<std::size_t>(connection.a)].kind,
                      modules_[static_cast<std::size_t>(connection.b)].kind, connection.direction);
   }
@@ -219,6 +239,9 @@ class Robot {
 
   /// The laws of all connections that there can be.
   std::span<const ConnectorLaw> connectors() const { return connectors_; }
+
+  /// Whether connections have laws of their own.
+  bool has_own_connectors() const { return !own_connectors_.empty(); }
 
   /// Whether Eq. (17) of the material is the law of every connection.
   bool has_default_connectors() const { return has_default_connectors_; }
@@ -269,6 +292,8 @@ class Robot {
   std::optional<std::string> touch(const RobotSpec& spec);
 
   std::optional<std::string> take_kinds(const RobotSpec& spec, const CellIndex& index);
+  std::optional<std::string> take_own_connectors(const RobotSpec& spec, const CellIndex& index);
+  const ConnectorLaw* find_own_connector(const Connection& connection) const;
   std::optional<std::string> take_loads(const RobotSpec& spec, const CellIndex& index);
 
   std::vector<Module> modules_;
@@ -286,7 +311,11 @@ class Robot {
   bool has_payloads_ = false;
   std::vector<CarriedMass> carried_;
   std::vector<ModuleKind> kinds_;
-  std::vector<ConnectorLaw> connectors_;  ///< By kind of a, kind of b, direction.
+  /// By kind of a, kind of b, direction; then the laws that connections have of their own.
+  std::vector<ConnectorLaw> connectors_;
+  /// The places in the table of neighbours of connections that have a law of their own, ascending,
+  /// with the index of the law.
+  std::vector<std::pair<std::size_t, std::size_t>> own_connectors_;
   bool has_default_connectors_ = true;
   bool has_floor_ = false;
   std::int32_t support_z_ = 0;

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -83,6 +84,9 @@ class RobotState {
   /// Neighbours that are not connected, each pair in ascending order.
   const std::set<model::CellPair>& released() const { return released_; }
 
+  /// The law that a connection has of its own; null if it has none.
+  const model::ConnectorLaw* own_connector(const base::Cell& a, const base::Cell& b) const;
+
   /// Whether two cells are neighbours with modules that are connected.
   bool are_connected(const base::Cell& a, const base::Cell& b) const;
 
@@ -125,6 +129,7 @@ class RobotState {
   std::vector<std::int32_t> free_;  ///< Indices of modules that are not there.
   std::unordered_map<base::Cell, std::int32_t, CellHash> index_;
   std::set<model::CellPair> released_;
+  std::map<model::CellPair, model::ConnectorLaw> own_connectors_;
 };
 
 /// What differs between two robots besides their modules, as holdfast JSON names it.

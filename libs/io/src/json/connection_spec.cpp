@@ -1,0 +1,226 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "json/connection_spec.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <string>
+
+#include "json/json_values.hpp"
+#include "vocabulary.hpp"
+
+namespace holdfast::io {
+namespace {
+
+using model::ConnectorLaw;
+
+/// The member of a law that a parameter sets; friction, which may be none, is not among them.
+struct LawMember {
+  std::string_view key;
+  double ConnectorLaw::*value;
+  std::optional<base::ConnectorClass> only = {};
+};
+
+constexpr LawMember kLawMembers[] = {
+    {kClassStrengthKeys[0], &ConnectorLaw::strength_n, base::ConnectorClass::kVertical},
+    {kClassStrengthKeys[1], &ConnectorLaw::strength_n, base::ConnectorClass::kLateral},
+    {"strength_n", &ConnectorLaw::strength_n},
+    {"lever_mm", &ConnectorLaw::lever_mm},
+    {"shear_strength_n", &ConnectorLaw::shear_strength_n},
+    {"torsion_strength_nmm", &ConnectorLaw::torsion_strength_nmm},
+    {"torsion_radius_mm", &ConnectorLaw::torsion_radius_mm},
+    {"gap_limit_mm", &ConnectorLaw::gap_limit_mm}};
+
+void set(ConnectorLaw& law, std::string_view key, double value, base::ConnectorClass direction) {
+  if (key == "friction") {
+    law.friction = std::isinf(value) ? std::nullopt : std::optional(value);
+    return;
+  }
+  const auto* const member = std::ranges::find(kLawMembers, key, &LawMember::key);
+  if (member != std::end(kLawMembers) && member->only.value_or(direction) == direction) {
+    law.*member->value = value;
+  }
+}
+
+/// The value of a parameter for a direction; none if it has none.
+std::optional<double> value_for(const ConnectorParameter& parameter, std::size_t direction,
+                                base::ConnectorClass direction_class) {
+  const std::size_t index = parameter.spread == Spread::kAll ? 0
+                            : parameter.spread == Spread::kClasses
+                                ? static_cast<std::size_t>(direction_class)
+                                : direction / 2;
+  return index < parameter.values.size() ? parameter.values[index] : std::nullopt;
+}
+
+/// The direction from the first cell of a pair to the second; none if they are no neighbours.
+std::optional<base::Direction> direction_of(const base::Lattice& lattice,
+                                            const model::CellPair& pair) {
+  for (const base::Direction direction : base::directions(lattice)) {
+    if (base::neighbour(lattice, pair[0], direction) == pair[1]) {
+      return direction;
+    }
+  }
+  return std::nullopt;
+}
+
+model::CellPair ascending(const model::CellPair& pair) {
+  return pair[0] < pair[1] ? pair : model::CellPair{pair[1], pair[0]};
+}
+
+/// Checks the pairs that a document names, and knows which they are.
+class NamedPairs {
+ public:
+  explicit NamedPairs(const Document& document)
+      : lattice_(document.extension.lattice), cells_(cells_of(document)) {}
+
+  /// Takes a pair; an error if it is no pair of neighbours, or was taken before.
+  std::optional<base::Error> take(const model::CellPair& pair, const JsonPlace& place) {
+    const std::string text = model::text(pair[0]) + "-" + model::text(pair[1]);
+    for (const base::Cell& cell : pair) {
+      if (!cells_.contains(cell)) {
+        return base::bad_input(
+            fmt::format("{}: expected two modules, found none at {}", text, model::text(cell)),
+            place.pointer());
+      }
+    }
+    if (!direction_of(lattice_, pair)) {
+      return base::bad_input(
+          fmt::format("{}: expected two modules whose faces touch, found two that do not", text),
+          place.pointer());
+    }
+    if (!pairs_.insert(ascending(pair)).second) {
+      return base::bad_input(
+          fmt::format("{}: expected each pair once in \"open\" and \"connections\" together, "
+                      "found it twice",
+                      text),
+          place.pointer());
+    }
+    return std::nullopt;
+  }
+
+  bool contains(const model::CellPair& pair) const { return pairs_.contains(ascending(pair)); }
+
+ private:
+  const base::Lattice& lattice_;
+  std::set<base::Cell> cells_;
+  std::set<model::CellPair> pairs_;
+};
+
+/// The kinds of modules by cell, of those that are not of the first one.
+std::map<base::Cell, const model::ModuleKind*> kinds_by_cell(
+    const Document& document, const std::vector<model::ModuleKind>& kinds) {
+  std::map<base::Cell, const model::ModuleKind*> by_cell;
+  for (const OwnParameters& own : document.extension.own) {
+    const auto kind = std::ranges::find(kinds, own.kind, &model::ModuleKind::name);
+    if (kind != kinds.end()) {
+      const base::Cell& cell = own.step == 0 ? document.modules[own.module].cell
+                                             : document.steps[own.step - 1][own.module].cell;
+      by_cell[cell] = &*kind;
+    }
+  }
+  return by_cell;
+}
+
+void add_laws(const Document& document, const std::vector<model::ModuleKind>& kinds,
+              const std::set<base::Cell>& cells, model::RobotSpec& spec) {
+  const Extension& extension = document.extension;
+  const auto by_cell = kinds_by_cell(document, kinds);
+  const auto kind_at = [&](const base::Cell& cell) -> const model::ModuleKind& {
+    const auto found = by_cell.find(cell);
+    return found == by_cell.end() ? kinds.front() : *found->second;
+  };
+  for (const auto& [between, connectors] : extension.connections) {
+    if (connectors == Connectors{} || !cells.contains(between[0]) || !cells.contains(between[1])) {
+      continue;
+    }
+    const auto direction = base::at(base::index(*direction_of(extension.lattice, between)));
+    model::ConnectorLaw law = model::weaker(kind_at(between[0]).connectors[direction],
+                                            kind_at(between[1]).connectors[direction ^ 1U]);
+    apply(connectors, extension.lattice, direction, law);
+    spec.own_connectors.push_back({between, law});
+  }
+}
+
+}  // namespace
+
+void apply(const Connectors& connectors, const base::Lattice& lattice, std::size_t direction,
+           ConnectorLaw& law) {
+  const base::ConnectorClass direction_class = lattice.connector_class[direction];
+  for (const ConnectorParameter& parameter : connectors.parameters) {
+    if (const auto value = value_for(parameter, direction, direction_class)) {
+      set(law, parameter.key, *value, direction_class);
+    }
+  }
+  law.bending = connectors.bending.value_or(law.bending);
+}
+
+bool has_connections(const Document& document) {
+  const Extension& extension = document.extension;
+  return extension.joins_listed || !extension.open.empty() || !extension.connections.empty();
+}
+
+std::set<base::Cell> cells_of(const Document& document) {
+  std::set<base::Cell> cells;
+  if (!has_connections(document)) {
+    return cells;
+  }
+  for (const ModuleEntry& module : document.modules) {
+    cells.insert(module.cell);
+  }
+  for (const Step& step : document.steps) {
+    for (const PlannedEntry& planned : step) {
+      cells.insert(planned.cell);
+    }
+  }
+  for (const model::Step& step : document.extension.plan) {
+    cells.insert(step.attach.begin(), step.attach.end());
+  }
+  return cells;
+}
+
+std::optional<base::Error> add_connections(const Document& document,
+                                           const std::vector<model::ModuleKind>& kinds,
+                                           const std::set<base::Cell>& cells,
+                                           model::RobotSpec& spec) {
+  if (!has_connections(document)) {
+    return std::nullopt;
+  }
+  const Extension& extension = document.extension;
+  const JsonPlace top;
+  const JsonPlace connections = top.at("connections");
+  NamedPairs listed(document);
+  for (std::size_t i = 0; i < extension.connections.size(); ++i) {
+    const JsonPlace entry = connections.at(i);
+    if (auto error = listed.take(extension.connections[i].between, entry.at(kBetweenKey))) {
+      return error;
+    }
+  }
+  NamedPairs named = listed;
+  const JsonPlace open = top.at("open");
+  std::set<model::CellPair> released;
+  for (std::size_t i = 0; i < extension.open.size(); ++i) {
+    if (auto error = named.take(extension.open[i], open.at(i))) {
+      return error;
+    }
+    released.insert(ascending(extension.open[i]));
+  }
+  for (const base::Cell& cell : cells) {
+    for (const base::Direction direction : base::directions(extension.lattice)) {
+      const model::CellPair pair = {cell, base::neighbour(extension.lattice, cell, direction)};
+      if (extension.joins_listed && cells.contains(pair[1]) && !listed.contains(pair)) {
+        released.insert(ascending(pair));
+      }
+    }
+  }
+  std::ranges::copy_if(released, std::back_inserter(spec.released), [&](const auto& pair) {
+    return cells.contains(pair[0]) && cells.contains(pair[1]);
+  });
+  add_laws(document, kinds, cells, spec);
+  return std::nullopt;
+}
+
+}  // namespace holdfast::io
