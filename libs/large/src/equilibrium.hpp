@@ -13,8 +13,9 @@ namespace holdfast::large {
 /// An equilibrium and what follows from its tangent.
 struct Found {
   Configuration here;
-  bool is_stable = false;      ///< The tangent, facets held in their states, is positive definite.
-  std::vector<Vec> direction = {};  ///< The displacements by lambda, by node; empty if it is singular.
+  bool is_stable = false;  ///< The tangent, facets held in their states, is positive definite.
+  std::vector<Vec> direction =
+      {};  ///< The displacements by lambda, by node; empty if it is singular.
 };
 
 /// Why there is none.

@@ -19,6 +19,9 @@ namespace {
 constexpr double kStepMaxFactor = 0.1;
 constexpr double kFactorResolution = 1e-6;
 
+/// The first step moves nothing by more pitches, or rad, by linear theory.
+constexpr double kFirstWay = 0.25;
+
 /// Events are known to this.
 constexpr double kEventResolution = 1e-9;
 
@@ -47,6 +50,11 @@ class Follower {
  private:
   std::optional<Found> start();
   Stop stop_at(Found found);
+
+  double resolution() const {
+    return kFactorResolution * std::max(here_.state.factor, first_step_);
+  }
+
   void watch(Stop& stop, EventKind kind, double value, std::vector<std::size_t> modules) const;
   void look_for_events(const Stop& from, const Stop& to);
   void find_event(std::size_t kind, const Stop& from, const Stop& to);
@@ -62,6 +70,7 @@ class Follower {
   Path path_;
   Stop here_;
   double step_ = kStepMaxFactor;
+  double first_step_ = kStepMaxFactor;  ///< With which linear theory is not far off.
 };
 
 /// The linear solution by the exact contact law. Its open facets are released.
@@ -157,6 +166,7 @@ void Follower::find_event(std::size_t kind, const Stop& from, const Stop& to) {
       side = -1;
     }
     if (std::abs(middle.value[kind]) < kEventResolution / 100) {
+      high = next;
       break;
     }
   }
@@ -202,7 +212,7 @@ void Follower::lose(const Found& from, double factor, Loss loss) {
 void Follower::find_bifurcation(const Found& unstable) {
   double high = unstable.here.factor;
   Loss loss = Loss::kBifurcation;
-  while (high - here_.state.factor > kFactorResolution) {
+  while (high - here_.state.factor > resolution()) {
     const double middle = (here_.state.factor + high) / 2;
     Search search = advance(system_, here_.found, middle);
     if (search.found && search.found->is_stable) {
@@ -218,7 +228,7 @@ void Follower::find_bifurcation(const Found& unstable) {
 /// Takes a smaller step where there was no equilibrium. Returns whether to go on.
 bool Follower::step_back(double failed_at, Failure failure) {
   step_ = (failed_at - here_.state.factor) / 4;
-  if (step_ >= kFactorResolution) {
+  if (step_ >= resolution()) {
     return true;
   }
   const double factor = here_.state.factor;
@@ -233,7 +243,7 @@ bool Follower::step_back(double failed_at, Failure failure) {
   }
   if (turn.beyond && turn.beyond->is_stable) {
     accept(stop_at(examined(system_, std::move(turn.beyond->here))));
-    step_ = kFactorResolution * 16;
+    step_ = 16 * resolution();
     return true;
   }
   path_.outcome = Outcome::kNotFound;
@@ -245,6 +255,10 @@ Path Follower::run() {
   if (!begin) {
     return std::move(path_);
   }
+  const Size size = size_of(begin->direction);
+  const double way = std::max(size.translation / system_.pitch(), size.rotation);
+  first_step_ = way > kFirstWay / kStepMaxFactor ? kFirstWay / way : kStepMaxFactor;
+  step_ = first_step_;
   here_ = stop_at(*std::move(begin));
   path_.outcome = Outcome::kReached;
   const double last = options_.factor_max;
@@ -252,7 +266,7 @@ Path Follower::run() {
     host::ask_whether_to_go_on();
     const double before = here_.state.factor;
     double next = std::min(before + step_, last);
-    next = before < 1 && next > 1 ? 1 : next;
+    next = before < 1 && next > 1 - kFactorResolution ? 1 : next;
     Search search = advance(system_, here_.found, next);
     if (!search.found) {
       if (!step_back(next, search.failure)) {

@@ -274,12 +274,16 @@ State System::state(const Configuration& here) const {
   const std::size_t count = connections_.size();
   state.middle_force.resize(count);
   state.load_ratio.resize(count);
+  state.gap_mm.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     const mechanics::LargeBeam& own = beam(connections_[i].direction);
     const BeamDeformation& deformation = deformations_[i];
-    state.middle_force[i] = own.middle_force(deformation, own.stress(deformation));
-    state.load_ratio[i] =
-        model::load_ratio(robot_.connector(connections_[i]), state.middle_force[i]).ratio;
+    const model::ConnectorLaw& law = robot_.connector(connections_[i]);
+    const Vec stress = own.stress(deformation);
+    state.middle_force[i] = own.middle_force(deformation, stress);
+    state.load_ratio[i] = model::load_ratio(law, state.middle_force[i]).ratio;
+    state.gap_mm[i] = mechanics::gap_mm(law, lattice_beam_.stiffness(), stress,
+                                        [](double x, double y) { return std::hypot(x, y); });
     if (!state.worst || state.load_ratio[i] > state.load_ratio[*state.worst]) {
       state.worst = i;
     }

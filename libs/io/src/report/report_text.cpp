@@ -11,6 +11,7 @@
 #include "holdfast/host/text.hpp"
 #include "holdfast/io/beside_one.hpp"
 #include "holdfast/io/report.hpp"
+#include "report/deformed_report.hpp"
 #include "report/limit_report.hpp"
 
 namespace holdfast::io {
@@ -73,7 +74,8 @@ void write_stability(Out out, const model::Robot& robot, const verdict::Assessme
   }
 }
 
-void write_loads(Out out, const model::Robot& robot, const verdict::Assessment& assessment) {
+void write_loads(Out out, const model::Robot& robot, const verdict::Assessment& assessment,
+                 bool is_deformed) {
   if (assessment.load_ratio_max && !assessment.worst) {
     const bool is_known = assessment.load_ratio_range.high < verdict::kLoadRatioTie;
     fmt::format_to(out, "  load ratio  no connection is {}pulled apart\n",
@@ -91,7 +93,7 @@ void write_loads(Out out, const model::Robot& robot, const verdict::Assessment& 
   if (!order.empty() && !assessment.is_stable) {
     fmt::format_to(out, "              (not meaningful: the robot {})\n",
                    assessment.verdict == verdict::Verdict::kUndecided ? "may move" : "topples");
-  } else if (assessment.weight_factor) {
+  } else if (assessment.weight_factor && !is_deformed) {
     fmt::format_to(out, "  weight      the first connection breaks at {} times {}\n",
                    beside_one(*assessment.weight_factor, 3),
                    robot.has_payloads() ? "these loads" : "this weight");
@@ -147,8 +149,11 @@ std::string write_report_text(const ReportEntry& entry) {
   fmt::format_to(out, "\n");
   write_modules(out, *entry.robot);
   write_stability(out, *entry.robot, assessment);
-  write_loads(out, *entry.robot, assessment);
+  write_loads(out, *entry.robot, assessment, entry.is_deformed);
   write_solver(out, assessment, entry.seconds);
+  if (entry.is_deformed) {
+    text += deformed_text(entry);
+  }
   if (entry.proof != nullptr) {
     write_proof(out, entry);
   }

@@ -89,6 +89,7 @@ struct State {
   /// By connection, the force in its middle, local frame there.
   std::vector<base::Vec6<double>> middle_force = {};
   std::vector<double> load_ratio = {};  ///< By connection.
+  std::vector<double> gap_mm = {};      ///< By connection: the opening at its facet's edge.
   double load_ratio_max = 0;            ///< 0 without connections.
   std::optional<std::size_t> worst = {};
   double displacement_max_mm = 0;
