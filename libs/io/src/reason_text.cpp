@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "edge_text.hpp"
+#include "factor_text.hpp"
 #include "holdfast/host/text.hpp"
 #include "holdfast/io/beside_one.hpp"
 #include "holdfast/io/report.hpp"
@@ -80,7 +81,7 @@ std::string losing_text(const Reason& reason, Cells cells) {
                      is_buckling ? "buckles"
                      : n[5] > 0  ? "tips over as it bends"
                                  : "collapses",
-                     beside_one(n[0], 4), model::text(cells[0]),
+                     factor_text(n[0]), model::text(cells[0]),
                      is_buckling ? "sways along" : "goes towards",
                      motion_text(n[2], n[3], n[4], !is_buckling));
 }
@@ -164,13 +165,13 @@ std::string load_text(const Reason& reason, Cells cells) {
       return fmt::format(
           "at {} of its loads a connection is strained by {} at its facet's edge: so far no linear "
           "law of beams holds, and what follows is not known",
-          beside_one(n[0], 4), n[1]);
+          factor_text(n[0]), n[1]);
     case ReasonCode::kTouchesFloor:
       return fmt::format("at {} of its loads {} bends down to the floor: what follows is not known",
-                         beside_one(n[0], 4), model::text(cells[0]));
+                         factor_text(n[0]), model::text(cells[0]));
     case ReasonCode::kTouchesItself:
       return fmt::format("at {} of its loads {} and {} meet as it bends: what follows is not known",
-                         beside_one(n[0], 4), model::text(cells[0]), model::text(cells[1]));
+                         factor_text(n[0]), model::text(cells[0]), model::text(cells[1]));
     case ReasonCode::kNoKnownTension:
       return fmt::format(
           "stable, and no connection is known to be pulled apart: none carries more than {:.1g} of "

@@ -18,9 +18,9 @@ constexpr double kStepMax = 0.25;
 /// The residual that is left, as a share of the largest load.
 constexpr double kResidual = 1e-10;
 
-/// Where rounding leaves more, an iteration that moves nothing by more than this share of the pitch
-/// ends the search, if the residual is not above the second share.
-constexpr double kRoundingStep = 1e-12;
+/// Where rounding leaves more, an iteration ends the search that does not make the residual smaller
+/// by more than this factor, if it is not above this share of the largest load.
+constexpr double kRoundingPace = 0.3;
 constexpr double kRoundingResidual = 1e-6;
 
 /// Modules may move by so many pitches, and so many for each of lambda's growth as a share of it.
@@ -29,10 +29,6 @@ constexpr double kJumpShare = 4;
 
 /// The smallest step on the way from held to released.
 constexpr double kReleaseStepMin = 1e-3;
-
-double in_mm(const Size& size, double pitch) {
-  return std::max(size.translation, size.rotation * pitch);
-}
 
 double in_newton(const Size& size, double pitch) {
   return std::max(size.translation, size.rotation / pitch);
@@ -102,7 +98,7 @@ bool release(System& system, Configuration& here) {
 std::optional<Configuration> converge(System& system, Configuration start) {
   Configuration here = std::move(start);
   const double tolerance = kResidual * std::abs(here.factor) * system.load_size();
-  double last_step = std::numeric_limits<double>::infinity();
+  double last_size = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < kIterationMax; ++iteration) {
     const bool is_changed = system.look_up_facets(here);
     std::vector<Vec> rest = system.residual(here);
@@ -110,7 +106,7 @@ std::optional<Configuration> converge(System& system, Configuration start) {
     if (!std::isfinite(size)) {
       return std::nullopt;
     }
-    const bool is_rounding = last_step <= kRoundingStep * system.pitch() &&
+    const bool is_rounding = size >= kRoundingPace * last_size &&
                              size <= kRoundingResidual * std::abs(here.factor) * system.load_size();
     if ((size <= tolerance || is_rounding) && !(is_changed && iteration == 0)) {
       return here;
@@ -126,7 +122,7 @@ std::optional<Configuration> converge(System& system, Configuration start) {
     }
     const double share = way > kStepMax ? kStepMax / way : 1;
     system.move(here, step, share);
-    last_step = share * in_mm(moved, system.pitch());
+    last_size = size;
   }
   return std::nullopt;
 }

@@ -32,6 +32,9 @@ constexpr int kEventStepMax = 60;
 /// only states and direction are taken.
 constexpr double kStartGamma = 1e-9;
 
+/// Without them nothing may move by more times as much.
+constexpr double kStartGrowth = 10;
+
 /// An equilibrium, and what is watched there: an event has happened where its value is 0 or more.
 struct Stop {
   Found found;
@@ -91,10 +94,18 @@ std::optional<Found> Follower::start() {
       facet.is_held = facet.state.pressed;
     }
   }
-  found.direction = system_.by_node(equilibrium.displacement);
   system_.residual(found.here);
   found.is_stable = system_.factor(found.here, true) && system_.is_definite();
-  return found.is_stable ? std::optional(std::move(found)) : std::nullopt;
+  if (!found.is_stable) {
+    return std::nullopt;
+  }
+  // Where weak springs alone hold it, rounding may take the tangent without them for definite.
+  found.direction = system_.solve(system_.loads());
+  const Size with_springs = size_of(system_.by_node(equilibrium.displacement));
+  const Size without = size_of(found.direction);
+  const bool is_held = without.translation <= kStartGrowth * with_springs.translation &&
+                       without.rotation <= kStartGrowth * with_springs.rotation;
+  return is_held ? std::optional(std::move(found)) : std::nullopt;
 }
 
 void Follower::watch(Stop& stop, EventKind kind, double value,
@@ -278,6 +289,12 @@ Path Follower::run() {
       accept(stop_at(*std::move(search.found)));
       step_ = std::min(2 * step_, kStepMaxFactor);
     }
+  }
+  if (path_.outcome != Outcome::kReached && path_.points.empty()) {
+    // Its contact has no settled states for the smallest loads, so that nothing is known.
+    path_.outcome = Outcome::kNoStart;
+    path_.critical.reset();
+    return std::move(path_);
   }
   path_.last = here_.state;
   std::ranges::stable_sort(path_.events, {}, &Event::factor);

@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "factor_text.hpp"
 #include "holdfast/host/text.hpp"
-#include "holdfast/io/beside_one.hpp"
 
 namespace holdfast::io {
 namespace {
@@ -121,24 +121,24 @@ std::string deformed_text(const ReportEntry& entry) {
       "  deformed    at {} times these loads: moved by {:.3g} mm, turned by {:.3g} rad, strained "
       "by "
       "{:.2g} at an edge{}; E = {:g} MPa\n",
-      beside_one(state.factor, 4), state.displacement_max_mm, state.rotation_max_rad,
+      factor_text(state.factor), state.displacement_max_mm, state.rotation_max_rad,
       state.edge_strain_max, is_doubtful ? " (much for a linear law)" : "",
       entry.robot->material().elastic_modulus_mpa);
   for (const large::Event& event : path.events) {
-    text += fmt::format("              at {} times these loads {}\n", beside_one(event.factor, 4),
+    text += fmt::format("              at {} times these loads {}\n", factor_text(event.factor),
                         event_text(*entry.robot, event));
   }
   if (path.critical) {
     text += fmt::format("              at {} times these loads it {}\n",
-                        beside_one(path.critical->factor, 4),
+                        factor_text(path.critical->factor),
                         path.critical->loss == large::Loss::kBifurcation ? "buckles" : "collapses");
   } else if (path.outcome == large::Outcome::kNotFound) {
     text += fmt::format("              beyond {} times these loads no equilibrium was found\n",
-                        beside_one(path.last.factor, 4));
+                        factor_text(path.last.factor));
   } else {
     text +=
         fmt::format("              stable up to {} times these loads, as far as it was followed\n",
-                    beside_one(path.last.factor, 4));
+                    factor_text(path.last.factor));
   }
   text += fmt::format("              {}, {} in {:.2f} s\n", host::counted(path.step_count, "step"),
                       host::counted(path.solve_count, "factorization"), entry.deformed_seconds);
