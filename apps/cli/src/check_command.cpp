@@ -33,6 +33,8 @@ struct CheckArguments {
   bool is_proof_wanted = false;
   bool is_limit_wanted = false;
   bool are_remedies_wanted = false;
+  bool is_deformed_wanted = false;
+  double factor_max = large::Options{}.factor_max;
   double limit_seconds = limit::LimitOptions{}.seconds_max;
   int thread_count = 0;
   double memory_gb = 4;
@@ -258,6 +260,8 @@ class CheckRun {
         .memory_bytes_max = static_cast<std::size_t>(options_.memory_gb * 1073741824.0),
         .is_proof_wanted = options_.is_proof_wanted || !options_.certificate.empty(),
         .is_limit_wanted = options_.is_limit_wanted,
+        .is_deformed_wanted = options_.is_deformed_wanted,
+        .factor_max = options_.factor_max,
         .limit_seconds_max = options_.limit_seconds};
     if (!options_.is_quiet) {
       options.progress = [this, &structure, file](int iteration, double error) {
@@ -330,12 +334,14 @@ Command add_check(CLI::App& app) {
              "Write a table, a line for each connection with its loads");
   add_figure(*command, options->figure, "Draw the structure and its loads");
   add_output(*command, "--vtk", options->vtk, "Write a .vtu file for ParaView");
-  add_output(*command, "--html", options->html,
-             "Write a page to look at in a browser, with the report");
-  add_output(*command, "--certificate", options->certificate,
-             "Write the proof for holdfast-checker; implies --prove");
-  command->add_flag("--prove", options->is_proof_wanted,
-                    "Prove the largest load ratio; a verdict that is not proved is undecided");
+  CLI::Option* const html = &add_output(*command, "--html", options->html,
+                                        "Write a page to look at in a browser, with the report");
+  CLI::Option* const certificate =
+      &add_output(*command, "--certificate", options->certificate,
+                  "Write the proof for holdfast-checker; implies --prove");
+  CLI::Option* const prove =
+      command->add_flag("--prove", options->is_proof_wanted,
+                        "Prove the largest load ratio; a verdict that is not proved is undecided");
   CLI::Option* const limit = command->add_flag(
       "--limit", options->is_limit_wanted,
       "Compute the limit load, too: the factor of all loads at which the robot collapses");
@@ -345,9 +351,22 @@ Command add_check(CLI::App& app) {
       ->check(number_between(0.0, 1e6))
       ->needs(limit)
       ->capture_default_str();
-  command->add_flag("--remedies", options->are_remedies_wanted,
-                    "Find what would make an unsafe structure hold: one more module, a prop, a "
-                    "module fixed or taken away, stronger connections");
+  CLI::Option* const remedies =
+      command->add_flag("--remedies", options->are_remedies_wanted,
+                        "Find what would make an unsafe structure hold: one more module, a prop, a "
+                        "module fixed or taken away, stronger connections");
+  CLI::Option* const deformed = command->add_flag("--deformed", options->is_deformed_wanted,
+                                                  "Judge the equilibrium in the deformed shape, at "
+                                                  "large rotations: does it buckle or collapse?");
+  for (CLI::Option* const other : {certificate, html, prove, limit, remedies}) {
+    deformed->excludes(other);
+  }
+  command
+      ->add_option("--up-to", options->factor_max,
+                   "The factor of all loads up to which the deformed shape is followed")
+      ->check(number_between(1.0, 1000.0))
+      ->needs(deformed)
+      ->capture_default_str();
   add_quiet(*command, options->is_quiet);
   command->add_flag("--bonded", options->is_bonded,
                     "Treat the ground as glued: supports can neither lift nor tilt");

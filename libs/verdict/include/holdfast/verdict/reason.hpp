@@ -56,14 +56,19 @@ enum class ReasonCode : std::uint8_t {
   /// Bending takes the centre of mass out of the support polygon: how far it moves, mm, its margin
   /// without that, and how far beyond the edge it is.
   kDisplacedMass,
-  kMassMoves,  ///< By much of its margin: how far, mm, the margin, and what is left of it.
+  kBuckles,    ///< At which factor of its loads, index of a module, the direction x, y, z it sways.
+  kCollapses,  ///< The same five, and 1 if facets tilt or are open then.
+  kTooSoft,    ///< A strain at a facet's edge is so large that no linear law holds: factor, strain.
+  kTouchesFloor,   ///< The factor, index of the module.
+  kTouchesItself,  ///< The factor, indices of two modules.
+  kMassMoves,      ///< By much of its margin: how far, mm, the margin, and what is left of it.
 };
 
 inline constexpr int kReasonCodeCount = static_cast<int>(ReasonCode::kMassMoves) + 1;
 
 /// One reason for a verdict, as data. io::reason_text() makes a sentence of it.
 struct Reason {
-  static constexpr std::size_t kNumberMax = 5;
+  static constexpr std::size_t kNumberMax = 6;
 
   ReasonCode code = ReasonCode::kNoEquilibrium;
   std::array<double, kNumberMax> numbers{};
