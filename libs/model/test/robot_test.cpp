@@ -316,7 +316,7 @@ TEST(Robot, has_laws_of_single_connections) {
             spec.material.strength_lateral_n);
   EXPECT_FALSE(robot.value().has_default_connectors());
   spec.own_connectors.push_back({{Cell{2, 0, 0}, Cell{1, 0, 0}}, law});
-  expect_error(spec, {"(2,0,0)-(1,0,0) has two laws of its own"});
+  expect_error(spec, {"(1,0,0)-(2,0,0) has two laws of its own"});
   spec.own_connectors.back().between = {Cell{0, 0, 0}, Cell{2, 0, 0}};
   expect_error(spec, {"(0,0,0)-(2,0,0) has a law of its own, but is not connected"});
 }
