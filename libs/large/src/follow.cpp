@@ -32,7 +32,7 @@ constexpr int kEventStepMax = 60;
 /// only states and direction are taken.
 constexpr double kStartGamma = 1e-9;
 
-/// Without them nothing may move by more times as much.
+/// The motion without them may be so many times as large at most.
 constexpr double kStartGrowth = 10;
 
 /// An equilibrium, and what is watched there: an event has happened where its value is 0 or more.
