@@ -318,6 +318,25 @@ int run(const CheckArguments& options) {
   return CheckRun(options).run();
 }
 
+void add_deformed(CLI::App& command, CheckArguments& options) {
+  CLI::Option* const deformed =
+      command
+          .add_flag("--deformed", options.is_deformed_wanted,
+                    "Judge the equilibrium in the deformed shape, at large rotations: does it "
+                    "buckle or collapse?")
+          ->excludes("--certificate")
+          ->excludes("--html")
+          ->excludes("--limit")
+          ->excludes("--prove")
+          ->excludes("--remedies");
+  command
+      .add_option("--up-to", options.factor_max,
+                  "The factor of all loads up to which the deformed shape is followed")
+      ->check(number_between(1.0, 1000.0))
+      ->needs(deformed)
+      ->capture_default_str();
+}
+
 }  // namespace
 
 Command add_check(CLI::App& app) {
@@ -334,14 +353,12 @@ Command add_check(CLI::App& app) {
              "Write a table, a line for each connection with its loads");
   add_figure(*command, options->figure, "Draw the structure and its loads");
   add_output(*command, "--vtk", options->vtk, "Write a .vtu file for ParaView");
-  CLI::Option* const html = &add_output(*command, "--html", options->html,
-                                        "Write a page to look at in a browser, with the report");
-  CLI::Option* const certificate =
-      &add_output(*command, "--certificate", options->certificate,
-                  "Write the proof for holdfast-checker; implies --prove");
-  CLI::Option* const prove =
-      command->add_flag("--prove", options->is_proof_wanted,
-                        "Prove the largest load ratio; a verdict that is not proved is undecided");
+  add_output(*command, "--html", options->html,
+             "Write a page to look at in a browser, with the report");
+  add_output(*command, "--certificate", options->certificate,
+             "Write the proof for holdfast-checker; implies --prove");
+  command->add_flag("--prove", options->is_proof_wanted,
+                    "Prove the largest load ratio; a verdict that is not proved is undecided");
   CLI::Option* const limit = command->add_flag(
       "--limit", options->is_limit_wanted,
       "Compute the limit load, too: the factor of all loads at which the robot collapses");
@@ -351,22 +368,10 @@ Command add_check(CLI::App& app) {
       ->check(number_between(0.0, 1e6))
       ->needs(limit)
       ->capture_default_str();
-  CLI::Option* const remedies =
-      command->add_flag("--remedies", options->are_remedies_wanted,
-                        "Find what would make an unsafe structure hold: one more module, a prop, a "
-                        "module fixed or taken away, stronger connections");
-  CLI::Option* const deformed = command->add_flag("--deformed", options->is_deformed_wanted,
-                                                  "Judge the equilibrium in the deformed shape, at "
-                                                  "large rotations: does it buckle or collapse?");
-  for (CLI::Option* const other : {certificate, html, prove, limit, remedies}) {
-    deformed->excludes(other);
-  }
-  command
-      ->add_option("--up-to", options->factor_max,
-                   "The factor of all loads up to which the deformed shape is followed")
-      ->check(number_between(1.0, 1000.0))
-      ->needs(deformed)
-      ->capture_default_str();
+  command->add_flag("--remedies", options->are_remedies_wanted,
+                    "Find what would make an unsafe structure hold: one more module, a prop, a "
+                    "module fixed or taken away, stronger connections");
+  add_deformed(*command, *options);
   add_quiet(*command, options->is_quiet);
   command->add_flag("--bonded", options->is_bonded,
                     "Treat the ground as glued: supports can neither lift nor tilt");

@@ -32,7 +32,7 @@ constexpr int kEventStepMax = 60;
 /// only states and direction are taken.
 constexpr double kStartGamma = 1e-9;
 
-/// Without them nothing may move by more times as much.
+/// The motion without them may be so many times as large at most.
 constexpr double kStartGrowth = 10;
 
 /// An equilibrium, and what is watched there: an event has happened where its value is 0 or more.
@@ -53,6 +53,12 @@ class Follower {
  private:
   std::optional<Found> start();
   Stop stop_at(Found found);
+
+  /// The largest motion, pitches or rad.
+  double way_of(const std::vector<Vec>& step) const {
+    const Size size = size_of(step);
+    return std::max(size.translation / system_.pitch(), size.rotation);
+  }
 
   double resolution() const {
     return kFactorResolution * std::max(here_.state.factor, first_step_);
@@ -101,10 +107,8 @@ std::optional<Found> Follower::start() {
   }
   // Where weak springs alone hold it, rounding may take the tangent without them for definite.
   found.direction = system_.solve(system_.loads());
-  const Size with_springs = size_of(system_.by_node(equilibrium.displacement));
-  const Size without = size_of(found.direction);
-  const bool is_held = without.translation <= kStartGrowth * with_springs.translation &&
-                       without.rotation <= kStartGrowth * with_springs.rotation;
+  const bool is_held =
+      way_of(found.direction) <= kStartGrowth * way_of(system_.by_node(equilibrium.displacement));
   return is_held ? std::optional(std::move(found)) : std::nullopt;
 }
 
@@ -266,8 +270,7 @@ Path Follower::run() {
   if (!begin) {
     return std::move(path_);
   }
-  const Size size = size_of(begin->direction);
-  const double way = std::max(size.translation / system_.pitch(), size.rotation);
+  const double way = way_of(begin->direction);
   first_step_ = way > kFirstWay / kStepMaxFactor ? kFirstWay / way : kStepMaxFactor;
   step_ = first_step_;
   here_ = stop_at(*std::move(begin));

@@ -39,7 +39,7 @@ Size size_of(std::span<const Vec> vectors);
 /// Keeps a reference to the robot. Vectors are by node: the modules that are not fixed, in order.
 class System {
  public:
-  /// None if the factors need more memory than is allowed.
+  /// Makes the equations of a robot; none if the factors need more memory than is allowed.
   static std::unique_ptr<System> make(const model::Robot& robot, const Options& options);
 
   const model::Robot& robot() const { return robot_; }

@@ -167,7 +167,7 @@ std::pair<double, double> elastica(double p, int n) {
   return {1 - x, z};
 }
 
-/// The same of a chain of modules, which bends in its plane only.
+/// Where the end of a chain of modules goes, which bends in its plane only.
 std::pair<double, double> bent_chain(double p, int n, int count) {
   model::RobotSpec spec = chain(count, {1, 0, 0});
   const double length = count * kPitch;

@@ -86,7 +86,7 @@ struct State {
   std::vector<mechanics::Pose> poses = {};           ///< By module.
   std::vector<solver::FacetState> facets = {};       ///< In the robot's order.
   std::vector<base::Vec6<double>> facet_force = {};  ///< By facet: on its module, at the node.
-  /// By connection, the force in its middle, local frame there.
+  /// The force in the middle of each connection, local frame there.
   std::vector<base::Vec6<double>> middle_force = {};
   std::vector<double> load_ratio = {};  ///< By connection.
   std::vector<double> gap_mm = {};      ///< By connection: the opening at its facet's edge.
