@@ -64,6 +64,23 @@ bool invert(const base::Mat6<double>& block, base::Mat6<double>& inverse) {
   return true;
 }
 
+bool is_positive_definite(const base::Mat6<double>& block) {
+  base::Mat6<double> root;
+  for (int k = 0; k < 6; ++k) {
+    for (int row = k; row < 6; ++row) {
+      double rest = block.at(row, k);
+      for (int j = 0; j < k; ++j) {
+        rest -= root.at(row, j) * root.at(k, j);
+      }
+      if (row == k && !(rest > 0)) {
+        return false;
+      }
+      root.at(row, k) = row == k ? std::sqrt(rest) : rest / root.at(k, k);
+    }
+  }
+  return true;
+}
+
 base::Mat6<double> inverse_root(const base::Mat6<double>& block,
                                 const base::Mat6<double>& first_value) {
   constexpr double kNothing = 1e-15;

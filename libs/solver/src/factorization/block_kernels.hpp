@@ -66,6 +66,9 @@ inline base::Mat6<double> scaled(const base::Mat6<double>& a, double factor) {
 /// then void.
 bool invert(const base::Mat6<double>& block, base::Mat6<double>& inverse);
 
+/// Whether a symmetric block is positive definite, by Cholesky's method.
+bool is_positive_definite(const base::Mat6<double>& block);
+
 /// C^-1 of the lower triangle C with C C' = block, by Cholesky's method. A pivot below kNothing of
 /// its `first_value`, before anything was eliminated, is rounding and taken as so much.
 base::Mat6<double> inverse_root(const base::Mat6<double>& block,

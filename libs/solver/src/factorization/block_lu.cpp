@@ -126,6 +126,13 @@ void BlockLu::make_upper() {
   }
 }
 
+bool BlockLu::is_positive_definite() const {
+  HOLDFAST_CHECK(symmetry_ == Symmetry::kSymmetric && !is_singular_);
+  return std::ranges::all_of(inverse_, [](const base::Mat6<double>& inverse) {
+    return solver::is_positive_definite(inverse);
+  });
+}
+
 std::size_t BlockLu::factor_product_count() const {
   std::size_t count = 0;
   for (std::size_t k = 0; k < position_.size(); ++k) {

@@ -63,6 +63,10 @@ class BlockLu {
   /// threads.
   [[nodiscard]] bool factor(int thread_count = 1);
 
+  /// Whether a symmetric A is positive definite, as its pivots say: by Sylvester's law of inertia A
+  /// has as many negative eigenvalues as D. Needs a successful factor().
+  bool is_positive_definite() const;
+
   /// Products of two blocks that factor() takes where every column is to be made.
   std::size_t factor_product_count() const;
 
