@@ -64,7 +64,9 @@ const char* name(ReasonCode code) {
                                                                        "in_pieces",
                                                                        "states_disagree",
                                                                        "displaced_mass",
-                                                                       "mass_moves"};
+                                                                       "mass_moves",
+                                                                       "second_order",
+                                                                       "bending_matters"};
   return kNames[static_cast<std::size_t>(code)];
 }
 
