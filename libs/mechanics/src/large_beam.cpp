@@ -411,6 +411,23 @@ Vec6<double> LargeBeam::second_order_stress(const Vec6<double>& u_p,
   return stress;
 }
 
+/// In the frame in the middle, which turns by w_p + psi / 2, the lever to q is
+/// (a0 + h (a1 - psi1 x a0 / 4)) / 2.
+Vec6<double> LargeBeam::second_order_middle_force(const Vec6<double>& u_p, const Vec6<double>& u_q,
+                                                  const Vec6<double>& first_on_q,
+                                                  const Vec6<double>& second_on_q) const {
+  const SecondOrderMotion motion = second_order_motion(axes_, length_, u_p, u_q);
+  const Vector3 turn = sum_of(motion.w_p, 0.5, motion.psi1);
+  const Vector3 f1 = to_local(axes_, upper(first_on_q));
+  const Vector3 m1 = to_local(axes_, lower(first_on_q));
+  const Vector3 f2 = sum_of(to_local(axes_, upper(second_on_q)), -1, cross(turn, f1));
+  const Vector3 m2 = sum_of(to_local(axes_, lower(second_on_q)), -1, cross(turn, m1));
+  const Vector3 lever1 = scaled(0.5, sum_of(motion.a1, -0.25, cross(motion.psi1, motion.a0)));
+  const Vector3 moment =
+      sum_of(sum_of(m2, 0.5, cross(motion.a0, f2)), 1, cross(lever1, f1));
+  return joined(scaled(-1, f2), scaled(-1, moment));
+}
+
 /// All of end_forces() by powers of h; 1 and 2 mark the terms of first and second order.
 EndForces LargeBeam::second_order_forces(const Vec6<double>& u_p, const Vec6<double>& u_q) const {
   const SecondOrderMotion motion = second_order_motion(axes_, length_, u_p, u_q);

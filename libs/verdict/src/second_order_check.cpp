@@ -56,11 +56,14 @@ class Beams {
     return linear_.middle_force(direction, p, q);
   }
 
-  /// The stresses of second order: those of u2, and of u1 to second order.
+  /// The force in the middle of second order, by statics: of u2, and of u1 to second order.
   Vec6<double> second(base::Direction direction, const Vec6<double>& p1, const Vec6<double>& q1,
                       const Vec6<double>& p2, const Vec6<double>& q2) const {
-    return base::sum_of(linear_.middle_force(direction, p2, q2), 1.0,
-                        large(direction).second_order_stress(p1, q1));
+    const base::Direction back = base::opposite(direction);
+    const Vec6<double> second_on_q = base::sum_of(
+        linear_.end_force(back, q2, p2), 1.0, large(direction).second_order_forces(p1, q1).q);
+    return large(direction).second_order_middle_force(
+        p1, q1, linear_.end_force(back, q1, p1), second_on_q);
   }
 
   /// The moment of a facet that sticks as a share of what its pressure holds; infinite without

@@ -132,6 +132,13 @@ class LargeBeam {
   base::Vec6<double> second_order_stress(const base::Vec6<double>& u_p,
                                          const base::Vec6<double>& u_q) const;
 
+  /// The term of second order of middle_force() in a motion that begins with h u_p, h u_q, from the
+  /// forces on q of first and second order, global frame.
+  base::Vec6<double> second_order_middle_force(const base::Vec6<double>& u_p,
+                                               const base::Vec6<double>& u_q,
+                                               const base::Vec6<double>& first_on_q,
+                                               const base::Vec6<double>& second_on_q) const;
+
  private:
   base::Vec6<double> stiffness_{};
   double length_ = 0;
