@@ -186,6 +186,43 @@ py::object limit_load(const CheckedStructure& check) {
   return out;
 }
 
+/// The keys of the JSON report.
+py::object second_order(const CheckedStructure& check) {
+  const auto& second = check.result.assessment.second_order;
+  if (!second) {
+    return py::none();
+  }
+  const auto known = [](const std::optional<double>& number) -> py::object {
+    return number && std::isfinite(*number) ? py::object(py::float_(*number)) : py::none();
+  };
+  using Answer = decltype(verdict::SecondOrder::answer);
+  const auto bound = [&](Answer answer) {
+    return known(second->answer == answer ? std::optional(second->factor) : std::nullopt);
+  };
+  py::dict out;
+  out["buckling_factor"] = known(second->buckling_factor());
+  out["buckling_factor_above"] = bound(Answer::kAbove);
+  out["buckling_factor_at_most"] = bound(Answer::kAtMost);
+  out["elastic_modulus_needed_mpa"] = known(second->elastic_modulus_needed_mpa());
+  out["mode"] = py::none();
+  if (second->mode) {
+    const auto& [cell, direction] = *second->mode;
+    py::dict mode;
+    mode["cell"] = py::make_tuple(cell.x, cell.y, cell.z);
+    mode["direction"] = py::make_tuple(direction[0], direction[1], direction[2]);
+    out["mode"] = mode;
+  }
+  out["load_ratio_max"] = known(second->load_ratio_max);
+  out["rotation_max_rad"] = second->rotation_max_rad;
+  out["displacement_max_mm"] = second->displacement_max_mm;
+  out["edge_strain_max"] = second->edge_strain_max;
+  out["facet_reserve_max"] = known(second->facet_reserve_max);
+  out["trusted"] = second->trust == verdict::Trust::kNotCertain
+                       ? py::object(py::none())
+                       : py::object(py::bool_(second->trust == verdict::Trust::kTrusted));
+  return out;
+}
+
 template <class Write>
 std::string text_of(const Write& write) {
   return without_gil([&] {
@@ -275,6 +312,7 @@ void add_check(py::module_& module) {
                              })
       .def_property_readonly("stability", &stability)
       .def_property_readonly("limit_load", &limit_load)
+      .def_property_readonly("second_order", &second_order)
       .def_property_readonly("seconds", [](const CheckedStructure& c) {
         return py::make_tuple(c.result.seconds, c.result.proof_seconds, c.result.limit_seconds);
       });

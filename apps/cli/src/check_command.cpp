@@ -31,6 +31,7 @@ struct CheckArguments {
   bool is_quiet = false;
   bool is_bonded = false;
   bool is_proof_wanted = false;
+  bool is_buckling_wanted = false;
   bool is_limit_wanted = false;
   bool are_remedies_wanted = false;
   bool is_deformed_wanted = false;
@@ -259,6 +260,7 @@ class CheckRun {
         .thread_count = options_.thread_count,
         .memory_bytes_max = static_cast<std::size_t>(options_.memory_gb * 1073741824.0),
         .is_proof_wanted = options_.is_proof_wanted || !options_.certificate.empty(),
+        .is_buckling_wanted = options_.is_buckling_wanted,
         .is_limit_wanted = options_.is_limit_wanted,
         .is_deformed_wanted = options_.is_deformed_wanted,
         .factor_max = options_.factor_max,
@@ -359,6 +361,8 @@ Command add_check(CLI::App& app) {
              "Write the proof for holdfast-checker; implies --prove");
   command->add_flag("--prove", options->is_proof_wanted,
                     "Prove the largest load ratio; a verdict that is not proved is undecided");
+  command->add_flag("--buckling", options->is_buckling_wanted,
+                    "Compute the buckling factor, whatever it is; without it where it is below 10");
   CLI::Option* const limit = command->add_flag(
       "--limit", options->is_limit_wanted,
       "Compute the limit load, too: the factor of all loads at which the robot collapses");

@@ -167,7 +167,16 @@ limit::LimitLoad find_limit(const model::Robot& robot, const verdict::Assessment
 
 }  // namespace
 
+std::optional<std::string> linear_note(const io::Document& document) {
+  return io::is_modulus_stated(document)
+             ? std::optional<std::string>(
+                   "states are judged by linear theory; whether it suffices for one of them "
+                   "holdfast check says")
+             : std::nullopt;
+}
+
 CheckResult check(const model::Robot& robot, const CheckOptions& options) {
+  using solver::SecondOrderWish;
   const auto start = std::chrono::steady_clock::now();
   const auto passed = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -176,6 +185,9 @@ CheckResult check(const model::Robot& robot, const CheckOptions& options) {
                          verdict::assess(robot, {.memory_bytes_max = options.memory_bytes_max,
                                                  .is_bonded = options.is_bonded,
                                                  .thread_count = options.thread_count,
+                                                 .second_order = options.is_buckling_wanted
+                                                                     ? SecondOrderWish::kFactor
+                                                                     : SecondOrderWish::kCheck,
                                                  .progress = options.progress})};
   result.seconds = passed();
   if (options.is_proof_wanted) {

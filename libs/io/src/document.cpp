@@ -9,6 +9,25 @@
 
 namespace holdfast::io {
 
+void take_number(const model::MaterialParameter& parameter, double value, Document& document) {
+  document.material.*parameter.value = value;
+  if (parameter.value == &model::Material::elastic_modulus_mpa) {
+    document.is_default_modulus_stated = value == model::Material{}.elastic_modulus_mpa;
+  }
+}
+
+bool is_modulus_stated(const Document& document) {
+  return document.is_default_modulus_stated ||
+         document.material.elastic_modulus_mpa != model::Material{}.elastic_modulus_mpa;
+}
+
+bool is_said(const model::MaterialParameter& parameter, const model::Material& defaults,
+             const Document& document) {
+  return document.material.*parameter.value != defaults.*parameter.value ||
+         (parameter.value == &model::Material::elastic_modulus_mpa &&
+          document.is_default_modulus_stated);
+}
+
 base::Result<Format> detect_format(std::string_view text) {
   if (text.starts_with(kBinaryMagic)) {
     return Format::kBinary;

@@ -133,6 +133,55 @@ std::string_view fixed_text(ReasonCode code) {
   }
 }
 
+constexpr std::string_view kAskDeformed = "ask with --deformed";
+
+/// A buckling factor, or nothing where it is not known.
+std::string factor_text(double factor) {
+  return factor > 0 ? fmt::format(" (buckling factor {})", beside_one(factor, 3)) : "";
+}
+
+std::string second_order_text(const Numbers& n) {
+  switch (static_cast<verdict::SecondOrderDoubt>(n[0])) {
+    case verdict::SecondOrderDoubt::kNoStiffness:
+      return fmt::format(
+          "linear theory does not suffice: in the states of its feet the robot has no stiffness; {}",
+          kAskDeformed);
+    case verdict::SecondOrderDoubt::kBuckles:
+      return fmt::format(
+          "linear theory does not suffice: it would buckle at some {} of its loads; {}",
+          beside_one(n[1], 3), kAskDeformed);
+    case verdict::SecondOrderDoubt::kLoads:
+      return fmt::format(
+          "linear theory does not suffice: bending changes the largest load ratio from {} to about "
+          "{}{}; {}",
+          beside_one(n[2], 4), beside_one(n[3], 2), factor_text(n[1]), kAskDeformed);
+    case verdict::SecondOrderDoubt::kTilts:
+      break;
+  }
+  return fmt::format("linear theory does not suffice: bent, the robot would tilt on its feet{}; {}",
+                     factor_text(n[1]), kAskDeformed);
+}
+
+std::string bending_text(const Numbers& n) {
+  if (n[0] != 0) {
+    return fmt::format(
+        "warning: whether the robot is far from buckling is not certain, as it is too large for a "
+        "factorization; {}",
+        kAskDeformed);
+  }
+  if (n[4] > 0) {
+    return fmt::format(
+        "warning: linear theory is not trusted: with the default elastic modulus the buckling "
+        "factor is {}; with less than {:.3g} MPa it would buckle; state elastic_modulus_mpa",
+        beside_one(n[1], 3), n[4]);
+  }
+  return fmt::format(
+      "warning: linear theory is not trusted: bent, the largest load ratio is about {} rather than "
+      "{}{}; {}",
+      beside_one(n[3], 4), beside_one(n[2], 4), factor_text(n[1]),
+      n[4] < 0 ? "state elastic_modulus_mpa" : kAskDeformed);
+}
+
 /// Reasons about loads that are known.
 std::string load_text(const Reason& reason, Cells cells) {
   const Numbers& n = reason.numbers;
@@ -172,6 +221,10 @@ std::string load_text(const Reason& reason, Cells cells) {
     case ReasonCode::kTouchesItself:
       return fmt::format("at {} of its loads {} and {} meet as it bends: what follows is not known",
                          factor_text(n[0]), model::text(cells[0]), model::text(cells[1]));
+    case ReasonCode::kSecondOrder:
+      return second_order_text(n);
+    case ReasonCode::kBendingMatters:
+      return bending_text(n);
     case ReasonCode::kNoKnownTension:
       return fmt::format(
           "stable, and no connection is known to be pulled apart: none carries more than {:.1g} of "

@@ -74,7 +74,7 @@ std::optional<std::string> take_setting(const Setting& setting, Document& docume
                        kStrengthKey);
   }
   if (const model::MaterialParameter* const parameter = model::find_parameter(setting.key)) {
-    document.material.*parameter->value = setting.value;
+    take_number(*parameter, setting.value, document);
     return std::nullopt;
   }
   std::erase_if(parameters, is_key(setting.key));

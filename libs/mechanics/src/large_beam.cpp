@@ -219,6 +219,38 @@ Quarters local_tangent(const BeamDeformation& beam, const Screw& screw, const Lo
   return result;
 }
 
+/// The terms of first and second order of a beam's motion at h u_p, h u_q, by powers of h: what is
+/// defined in the header, with the spin w_p of p and d = u_q - u_p, local frame.
+struct SecondOrderMotion {
+  Vector3 w_p;
+  Vector3 d;
+  Vector3 a0;
+  Vector3 a1;
+  Vector3 psi1;
+  Vector3 psi2;
+  Vector3 rho1;
+  Vector3 rho2;
+};
+
+SecondOrderMotion second_order_motion(const Rotation<double>& axes, double length,
+                                      const Vec6<double>& u_p, const Vec6<double>& u_q) {
+  SecondOrderMotion m;
+  m.w_p = to_local(axes, lower(u_p));
+  const Vector3 w_q = to_local(axes, lower(u_q));
+  m.d = to_local(axes, sum_of(upper(u_q), -1, upper(u_p)));
+  m.a0 = {0, 0, -length};
+  const Vector3 back = cross(m.w_p, m.a0);
+  m.a1 = sum_of(m.d, -1, back);
+  const Vector3 a2 = sum_of(scaled(-1, cross(m.w_p, m.d)), 0.5, cross(m.w_p, back));
+  m.psi1 = sum_of(w_q, -1, m.w_p);
+  m.psi2 = scaled(-0.5, cross(m.w_p, w_q));
+  const Vector3 b = cross(m.psi1, m.a0);
+  m.rho1 = sum_of(m.a1, -0.5, b);
+  m.rho2 = sum_of(sum_of(sum_of(a2, -0.5, cross(m.psi2, m.a0)), -0.5, cross(m.psi1, m.a1)),
+                  1.0 / 12, cross(m.psi1, b));
+  return m;
+}
+
 }  // namespace
 
 Pose moved(const Pose& pose, const Vec6<double>& step) {
@@ -366,21 +398,40 @@ EndTangent LargeBeam::geometric_stiffness(const Vec6<double>& stress) const {
   return result;
 }
 
+Vec6<double> LargeBeam::second_order_stress(const Vec6<double>& u_p,
+                                            const Vec6<double>& u_q) const {
+  const SecondOrderMotion motion = second_order_motion(axes_, length_, u_p, u_q);
+  const Vector3& rho1 = motion.rho1;
+  const double bowed = 0.6 * (rho1[0] * rho1[0] + rho1[1] * rho1[1]) / length_;
+  Vec6<double> stress = {-motion.rho2[0],        -motion.rho2[1], bowed - motion.rho2[2],
+                         -motion.psi2[0], -motion.psi2[1], -motion.psi2[2]};
+  for (std::size_t i = 0; i < 6; ++i) {
+    stress[i] *= stiffness_[i];
+  }
+  return stress;
+}
+
+/// In the frame in the middle, which turns by w_p + psi / 2, the lever to q is
+/// (a0 + h (a1 - psi1 x a0 / 4)) / 2.
+Vec6<double> LargeBeam::second_order_middle_force(const Vec6<double>& u_p, const Vec6<double>& u_q,
+                                                  const Vec6<double>& first_on_q,
+                                                  const Vec6<double>& second_on_q) const {
+  const SecondOrderMotion motion = second_order_motion(axes_, length_, u_p, u_q);
+  const Vector3 turn = sum_of(motion.w_p, 0.5, motion.psi1);
+  const Vector3 f1 = to_local(axes_, upper(first_on_q));
+  const Vector3 m1 = to_local(axes_, lower(first_on_q));
+  const Vector3 f2 = sum_of(to_local(axes_, upper(second_on_q)), -1, cross(turn, f1));
+  const Vector3 m2 = sum_of(to_local(axes_, lower(second_on_q)), -1, cross(turn, m1));
+  const Vector3 lever1 = scaled(0.5, sum_of(motion.a1, -0.25, cross(motion.psi1, motion.a0)));
+  const Vector3 moment =
+      sum_of(sum_of(m2, 0.5, cross(motion.a0, f2)), 1, cross(lever1, f1));
+  return joined(scaled(-1, f2), scaled(-1, moment));
+}
+
 /// All of end_forces() by powers of h; 1 and 2 mark the terms of first and second order.
 EndForces LargeBeam::second_order_forces(const Vec6<double>& u_p, const Vec6<double>& u_q) const {
-  const Vector3 w_p = to_local(axes_, lower(u_p));
-  const Vector3 w_q = to_local(axes_, lower(u_q));
-  const Vector3 d = to_local(axes_, sum_of(upper(u_q), -1, upper(u_p)));
-  const Vector3 a0 = {0, 0, -length_};
-  const Vector3 back = cross(w_p, a0);
-  const Vector3 a1 = sum_of(d, -1, back);
-  const Vector3 a2 = sum_of(scaled(-1, cross(w_p, d)), 0.5, cross(w_p, back));
-  const Vector3 psi1 = sum_of(w_q, -1, w_p);
-  const Vector3 psi2 = scaled(-0.5, cross(w_p, w_q));
-  const Vector3 b = cross(psi1, a0);
-  const Vector3 rho1 = sum_of(a1, -0.5, b);
-  const Vector3 rho2 = sum_of(sum_of(sum_of(a2, -0.5, cross(psi2, a0)), -0.5, cross(psi1, a1)),
-                              1.0 / 12, cross(psi1, b));
+  const SecondOrderMotion motion = second_order_motion(axes_, length_, u_p, u_q);
+  const auto& [w_p, d, a0, a1, psi1, psi2, rho1, rho2] = motion;
   const double drawn = 1.2 / length_;
   const double bowed = drawn * (rho1[0] * rho1[0] + rho1[1] * rho1[1]) / 2;
   const Vec6<double>& k = stiffness_;

@@ -101,6 +101,8 @@ Robot::Robot(const RobotSpec& spec)
       neighbours_(lattice_count()),
       connected_(lattice_count()),
       material_(spec.material),
+      is_modulus_stated_(spec.is_modulus_stated ||
+                         spec.material.elastic_modulus_mpa != Material{}.elastic_modulus_mpa),
       foot_half_width_mm_(foot_half_width(spec)),
       gravity_(gravity_of(spec)),
       loads_(weight_loads(spec.material)),

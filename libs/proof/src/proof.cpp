@@ -345,6 +345,10 @@ void apply(const model::Robot& robot, const Proof& proof, Assessment& assessment
   if (assessment.several && verdict != assessment.verdict) {
     verdict = verdict::Verdict::kUndecided;  // Nothing is proved of the other solutions.
   }
+  const auto doubt = holds ? verdict::second_order_doubt(assessment) : std::nullopt;
+  if (doubt) {
+    verdict = verdict::Verdict::kUndecided;  // What is proved is linear.
+  }
   const bool is_changed = verdict != std::exchange(assessment.verdict, verdict);
   if (!holds) {
     assessment.reasons = {{.code = verdict::ReasonCode::kNotProved,
@@ -354,6 +358,9 @@ void apply(const model::Robot& robot, const Proof& proof, Assessment& assessment
     return;
   }
   take_loads(robot, proof, is_changed, thread_count, assessment);
+  if (doubt && assessment.reasons.front().code != doubt->code) {
+    assessment.reasons.insert(assessment.reasons.begin(), *doubt);
+  }
   assessment.load_ratio_range = {.low = found.ratio_low, .high = found.ratio_high};
   assessment.reasons.push_back({.code = what_is_proved(assessment.contact_model)});
 }

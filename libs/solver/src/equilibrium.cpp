@@ -81,6 +81,26 @@ void compare_with_free_facets(UnilateralContact& contact, Equilibrium& result) {
   result.energy_error = std::max(result.energy_error, free->energy_error);
 }
 
+/// Puts all facets into their states by the exact law, without weak springs where a factorization
+/// needs none. Facets that all stick are so by either law.
+void take_states(LinearSystem& system, const std::vector<mechanics::ContactState>& contact) {
+  constexpr double kWeakSprings = 1e-6;
+  const auto is_stuck = [](const auto& state) { return state == mechanics::kStuck; };
+  const bool is_known = std::ranges::all_of(system.facets(), [&](const FacetState& facet) {
+    return is_stuck(facet.state) && facet.is_held;
+  });
+  const bool is_all_stuck = std::ranges::all_of(contact, is_stuck);
+  if (is_known && is_all_stuck && system.report().solve_count > 0) {
+    return;
+  }
+  const bool has_springs = !system.is_exact() && !is_all_stuck;
+  system.set_law(
+      {.law = ContactLaw::kUnilateral, .gamma = has_springs ? kWeakSprings : 0.0});
+  for (std::size_t i = 0; i < contact.size(); ++i) {
+    system.set_facet(i, contact[i], contact[i].pressed);
+  }
+}
+
 }  // namespace
 
 void Equilibrium::begin_with(const Equilibrium& earlier) {
@@ -179,6 +199,14 @@ void EquilibriumSolver::seek_others(Equilibrium& settled) {
   const int solve_count = system.report().solve_count;
   settled.others = RegularisedContact(system, options_).find_others(settled);
   settled.steps += system.report().solve_count - solve_count;
+}
+
+SecondOrder EquilibriumSolver::find_second_order(const Equilibrium& settled,
+                                                 const SecondOrderOptions& options) {
+  const std::unique_ptr<LinearSystem> beside = choice_->make_direct_beside();
+  LinearSystem& system = beside ? *beside : *choice_->system();
+  take_states(system, settled.contact);
+  return second_order(system, settled.displacement, options);
 }
 
 std::vector<Equilibrium> EquilibriumSolver::seek_settled(const ContactOptions& contact) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "system_choice.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -16,6 +17,14 @@ constexpr std::size_t kDirectCountMax = 128;
 /// faster if no more blocks than this fill in per node.
 constexpr std::size_t kUnilateralCountMax = 6000;
 constexpr std::size_t kUnilateralFillMax = 16;
+
+/// A factorization beside multigrid takes no longer than multigrid itself with so many blocks that
+/// fill in and products of two blocks per node. Robots of many modules with so many connections each
+/// are not tried, as even the order of elimination takes long and then fills in more.
+constexpr std::size_t kBesideFillMax = 16;
+constexpr std::size_t kBesideProductMax = 150;
+constexpr std::size_t kBesideCountTried = 5'000;
+constexpr double kBesideConnectionsMax = 2.0;
 
 constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max();
 
@@ -56,6 +65,22 @@ void SystemChoice::prepare(mechanics::ContactLaw law) {
       law == mechanics::ContactLaw::kUnilateral && robot_.free_count() <= kUnilateralCountMax) {
     make_direct(kUnilateralFillMax);
   }
+}
+
+std::unique_ptr<DirectSystem> SystemChoice::make_direct_beside() const {
+  const std::size_t count = robot_.free_count();
+  const auto connection_count = static_cast<double>(robot_.connections().size());
+  const bool is_dense = connection_count > kBesideConnectionsMax * static_cast<double>(count);
+  if (!multigrid_ || options_.method == Method::kMultigrid ||
+      (count > kBesideCountTried && is_dense)) {
+    return nullptr;
+  }
+  EquilibriumOptions options = options_;
+  options.fill_max = std::min(options.fill_max, kBesideFillMax);
+  std::unique_ptr<DirectSystem> direct = DirectSystem::make(robot_, options);
+  const bool is_affordable =
+      direct && direct->factors().factor_product_count() <= kBesideProductMax * count;
+  return is_affordable ? std::move(direct) : nullptr;
 }
 
 bool SystemChoice::try_next() {

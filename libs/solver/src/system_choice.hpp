@@ -24,6 +24,10 @@ class SystemChoice {
   /// Changes to the system that suits a law better, if there is one.
   void prepare(mechanics::ContactLaw law);
 
+  /// Makes a direct system beside multigrid, if what its factorization takes is less than multigrid
+  /// takes; else none.
+  std::unique_ptr<DirectSystem> make_direct_beside() const;
+
   /// Changes to the next one after an attempt that did not get there: multigrid in double
   /// precision, and the direct solver; small robots the other way round. Returns whether there is
   /// one to try.

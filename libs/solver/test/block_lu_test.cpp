@@ -602,5 +602,36 @@ TEST(PositiveBlockLu, takes_pivots_that_are_rounding_for_rounding) {
   EXPECT_LT((matrix.dense * x - b).lpNorm<Eigen::Infinity>(), 1e-6);
 }
 
+/// Symmetric matrices whose least eigenvalue is moved through zero.
+TEST(BlockLu, tells_whether_a_symmetric_matrix_is_positive_definite) {
+  base::Rng rng(11);
+  for (int round = 0; round < 20; ++round) {
+    constexpr std::int32_t kCount = 12;
+    const std::vector<Edge> edges = random_graph(rng, kCount, 30);
+    Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(6 * kCount, 6 * kCount);
+    std::vector<Mat6<double>> blocks;
+    for (const Edge& edge : edges) {
+      blocks.push_back(random_block(rng, 0));
+      for (int i = 0; i < 36; ++i) {
+        dense(6 * edge.a + i % 6, 6 * edge.b + i / 6) = blocks.back().at(i % 6, i / 6);
+        dense(6 * edge.b + i / 6, 6 * edge.a + i % 6) = blocks.back().at(i % 6, i / 6);
+      }
+    }
+    const double least =
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense).eigenvalues().minCoeff();
+    for (const double beside : {-1e-6, 1e-6}) {
+      BlockLu lu(kCount, edges, kUnlimited, Symmetry::kSymmetric);
+      for (std::size_t e = 0; e < edges.size(); ++e) {
+        lu.set_edge(e, blocks[e]);
+      }
+      for (std::size_t node = 0; node < kCount; ++node) {
+        lu.set_diagonal(node, scaled_identity(beside - least));
+      }
+      ASSERT_TRUE(lu.factor());
+      EXPECT_EQ(lu.is_positive_definite(), beside > 0) << round;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace holdfast::solver

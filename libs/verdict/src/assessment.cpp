@@ -10,6 +10,7 @@
 
 #include "connection_assessment.hpp"
 #include "decision.hpp"
+#include "second_order_check.hpp"
 #include "several_solutions.hpp"
 #include "stability.hpp"
 
@@ -138,9 +139,21 @@ bool has_pulling_facets(const Situation& here, const Equilibrium& equilibrium) {
   return !here.is_on_flat_floor && host::any(here.robot.ranks(), is_any_not_stuck);
 }
 
-/// The equilibrium, its loads, and what there is beside it: the paper's law's further solutions,
-/// and the exact law's answer where there are any, or where open facets may pull. Loads come before
-/// others are sought, as then the second answer need not wait.
+/// The paper's law's further solutions, and the exact law's answer where there are any, or where
+/// open facets may pull.
+void look_beside(const Situation& here, solver::EquilibriumSolver& solver,
+                 const solver::EquilibriumOptions& options, const LoadRange& answers,
+                 Assessment& assessment) {
+  solver.seek_others(assessment.equilibrium);
+  if (here.has_connections && (!assessment.equilibrium.others.empty() ||
+                               has_pulling_facets(here, assessment.equilibrium))) {
+    const double gamma = weak_springs(solver, assessment.is_stable).front();
+    compare_solutions(here, solver, gamma, options, answers, assessment);
+  }
+}
+
+/// The equilibrium, its loads, and what there is beside it. Loads come before others are sought, as
+/// then the second answer need not wait.
 void solve(const Situation& here, const solver::EquilibriumOptions& options,
            Assessment& assessment) {
   solver::EquilibriumSolver solver(here.robot, options);
@@ -149,14 +162,13 @@ void solve(const Situation& here, const solver::EquilibriumOptions& options,
     return;
   }
   const LoadRange answers = assess_loads(here, options, assessment);
-  if (!stands_by_paper(assessment)) {
-    return;
+  if (stands_by_paper(assessment)) {
+    look_beside(here, solver, options, answers, assessment);
   }
-  solver.seek_others(assessment.equilibrium);
-  if (here.has_connections && (!assessment.equilibrium.others.empty() ||
-                               has_pulling_facets(here, assessment.equilibrium))) {
-    const double gamma = weak_springs(solver, assessment.is_stable).front();
-    compare_solutions(here, solver, gamma, options, answers, assessment);
+  if (options.second_order != solver::SecondOrderWish::kNothing && assessment.is_stable &&
+      !here.robot.ranks().is_shared()) {
+    assessment.second_order =
+        check_second_order(here, solver, kStableGammas[0], options, assessment);
   }
 }
 

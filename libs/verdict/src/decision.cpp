@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "second_order_check.hpp"
 #include "several_solutions.hpp"
 #include "stability.hpp"
 
@@ -179,6 +180,10 @@ void add_load_remarks(const Situation& here, Assessment& assessment) {
         {.code = ReasonCode::kMassMoves,
          .numbers = {assessment.lean->shift_mm, margin, assessment.lean->margin_mm}});
   }
+  const bool is_doubted = assessment.reasons.front().code == ReasonCode::kSecondOrder;
+  if (auto warning = is_doubted ? std::nullopt : second_order_warning(assessment)) {
+    assessment.reasons.push_back(*std::move(warning));
+  }
   if (here.has_payloads && assessment.worst) {
     assessment.reasons.push_back({.code = ReasonCode::kLoadsTogether});
   }
@@ -205,6 +210,9 @@ Decision decision_on(const Situation& here, const Assessment& assessment) {
             .reason = *std::move(fall)};
   }
   if (auto doubt = find_doubt(here, assessment)) {
+    return {.is_stable = true, .reason = *std::move(doubt)};
+  }
+  if (auto doubt = second_order_doubt(assessment)) {
     return {.is_stable = true, .reason = *std::move(doubt)};
   }
   if (breaks(assessment.load_ratio_range.low)) {

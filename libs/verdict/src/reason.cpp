@@ -76,7 +76,9 @@ const char* name(ReasonCode code) {
                                                                        "too_soft",
                                                                        "touches_floor",
                                                                        "touches_itself",
-                                                                       "mass_moves"};
+                                                                       "mass_moves",
+                                                                       "second_order",
+                                                                       "bending_matters"};
   return kNames[static_cast<std::size_t>(code)];
 }
 

@@ -287,12 +287,16 @@ bool do_states_hold(const Situation& here, std::span<const mechanics::ContactSta
 }
 
 std::optional<Lean> find_lean(const model::Robot& robot, const Assessment& assessment) {
+  return find_lean(robot, assessment, assessment.equilibrium.displacement);
+}
+
+std::optional<Lean> find_lean(const model::Robot& robot, const Assessment& assessment,
+                              const std::vector<base::Vec6<double>>& displacement) {
   const RigidBody& body = assessment.simplified;
   if (assessment.stability_rule != StabilityRule::kPolygon || !body.margin_mm ||
       *body.margin_mm <= 0 || assessment.contact_model == ContactModel::kBonded) {
     return std::nullopt;
   }
-  const auto& displacement = assessment.equilibrium.displacement;
   MovedMass moved;
   for (std::size_t i = 0; i < robot.own_count(); ++i) {
     moved.add(robot.mass(i), displacement[i][0], displacement[i][1]);

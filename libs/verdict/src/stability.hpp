@@ -28,6 +28,10 @@ bool do_states_hold(const Situation& here, std::span<const mechanics::ContactSta
 /// none for any other.
 std::optional<Lean> find_lean(const model::Robot& robot, const Assessment& assessment);
 
+/// The same by other displacements than the equilibrium's.
+std::optional<Lean> find_lean(const model::Robot& robot, const Assessment& assessment,
+                              const std::vector<base::Vec6<double>>& displacement);
+
 /// The facet whose sideways force exceeds its friction most, as a share of what it presses with
 /// times the coefficient; none if none does by more than its forces may be off.
 std::optional<Slip> find_slip(const model::Robot& robot, const solver::Equilibrium& equilibrium);

@@ -101,6 +101,8 @@ struct CheckOptions {
   std::size_t memory_bytes_max = solver::EquilibriumOptions{}.memory_bytes_max;
   /// Proves the largest load ratio; a verdict that is not proved becomes `undecided`.
   bool is_proof_wanted = false;
+  /// Seeks the buckling factor whatever it is. Otherwise it is sought where it is below 10.
+  bool is_buckling_wanted = false;
   /// Seeks the limit load: the largest factor of all loads that any forces could balance.
   bool is_limit_wanted = false;
   /// Follows the equilibria in the deformed shape, up to a factor of all loads of at least 1, and
@@ -159,6 +161,10 @@ base::Result<io::Document> generate(std::string_view family, std::size_t size);
 
 /// The name of each family and the meaning of its size, in the order of their list.
 std::vector<std::pair<std::string_view, std::string_view>> family_list();
+
+/// The note of those who judge many states by linear theory alone, where the structure states its
+/// elastic modulus, so that check() would ask whether that suffices; none where it does not.
+std::optional<std::string> linear_note(const io::Document& document);
 
 CheckResult check(const model::Robot& robot, const CheckOptions& options = {});
 

@@ -105,6 +105,7 @@ Document without_modules(const Document& document) {
   common.name = document.name;
   common.support_z = document.support_z;
   common.material = document.material;
+  common.is_default_modulus_stated = document.is_default_modulus_stated;
   common.extension = document.extension;
   common.extension.own.clear();
   common.extension.plan.clear();

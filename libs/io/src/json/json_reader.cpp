@@ -200,7 +200,7 @@ void JsonReader::read_material(const Json& value, const JsonPlace& place) {
        reading_.members(value, place, "an object of numbers, such as {\"mass_kg\": 0.061}")) {
     const JsonPlace here = place.at(key);
     if (const auto* const parameter = model::find_parameter(key)) {
-      reading_.document.material.*parameter->value = reading_.number(member, here);
+      take_number(*parameter, reading_.number(member, here), reading_.document);
     } else if (is_material_extension(key)) {
       if (allows(here)) {
         read_material_extension(reading_, key, member, here);

@@ -106,7 +106,7 @@ Items material_members(const Document& document) {
   for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
     const bool is_overridden = parameter.value == &model::Material::gravity_m_s2 &&
                                document.extension.gravity_m_s2.has_value();
-    if (!is_overridden && material.*parameter.value != defaults.*parameter.value) {
+    if (!is_overridden && is_said(parameter, defaults, document)) {
       members.push_back(member(parameter.key, json_text(material.*parameter.value)));
     }
   }

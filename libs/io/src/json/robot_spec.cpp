@@ -158,6 +158,7 @@ std::optional<base::Error> add_own(const Document& document,
 model::RobotSpec start_of(const Document& document) {
   const Extension& extension = document.extension;
   model::RobotSpec spec{.material = document.material,
+                        .is_modulus_stated = document.is_default_modulus_stated,
                         .lattice = extension.lattice,
                         .floor = {.friction = extension.floor_friction},
                         .obstacles = extension.obstacles,

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "connection_list.hpp"
@@ -159,6 +160,51 @@ void write_several(JsonStream& json, const verdict::Assessment& assessment) {
   json.end_object();
 }
 
+/// A number; none if it is infinite.
+std::optional<double> if_finite(double number) {
+  return std::isfinite(number) ? std::optional(number) : std::nullopt;
+}
+
+void write_mode(JsonStream& json, const std::optional<verdict::BucklingMode>& mode) {
+  json.key("mode");
+  if (!mode) {
+    json.value(nullptr);
+    return;
+  }
+  json.begin_object();
+  json.key("cell");
+  json.value(mode->cell);
+  write_vector(json, "direction", mode->direction);
+  json.end_object();
+}
+
+void write_second_order(JsonStream& json, const verdict::Assessment& assessment) {
+  using solver::BucklingAnswer;
+  if (!assessment.second_order) {
+    json.value(nullptr);
+    return;
+  }
+  const verdict::SecondOrder& second = *assessment.second_order;
+  const auto bound = [&](BucklingAnswer answer) {
+    return second.answer == answer ? if_finite(second.factor) : std::nullopt;
+  };
+  json.begin_object();
+  json.member("buckling_factor", second.buckling_factor());
+  json.member("buckling_factor_above", bound(BucklingAnswer::kAbove));
+  json.member("buckling_factor_at_most", bound(BucklingAnswer::kAtMost));
+  json.member("elastic_modulus_needed_mpa", second.elastic_modulus_needed_mpa());
+  write_mode(json, second.mode);
+  json.member("load_ratio_max", second.load_ratio_max);
+  json.member("rotation_max_rad", second.rotation_max_rad);
+  json.member("displacement_max_mm", second.displacement_max_mm);
+  json.member("edge_strain_max", second.edge_strain_max);
+  json.member("facet_reserve_max", if_finite(second.facet_reserve_max));
+  json.member("trusted", second.trust == verdict::Trust::kNotCertain
+                             ? std::nullopt
+                             : std::optional(second.trust == verdict::Trust::kTrusted));
+  json.end_object();
+}
+
 const char* solver_name(solver::Method method, solver::Precision precision) {
   if (method != solver::Method::kMultigrid) {
     return "sparse direct, 6x6 block LU";
@@ -252,6 +298,8 @@ class Writer {
     json_.begin_object();
     write_head();
     write_overload();
+    json_.key("second_order");
+    write_second_order(json_, *entry_.assessment);
     write_connections();
     write_tail();
     if (more) {

@@ -107,6 +107,35 @@ void write_loads(Out out, const model::Robot& robot, const verdict::Assessment& 
   }
 }
 
+std::string buckling_text(const verdict::SecondOrder& second) {
+  using solver::BucklingAnswer;
+  if (const auto factor = second.buckling_factor();
+      factor && second.answer == BucklingAnswer::kFactor) {
+    return fmt::format("buckling factor {} (linear estimate)", beside_one(*factor, 3));
+  }
+  switch (second.answer) {
+    case BucklingAnswer::kNone:
+      return "no buckling";
+    case BucklingAnswer::kAbove:
+      return fmt::format("buckling factor above {:g}", second.factor);
+    case BucklingAnswer::kAtMost:
+      return std::isfinite(second.factor)
+                 ? fmt::format("buckling factor at most {:.3g} (linear estimate)", second.factor)
+                 : "buckling factor not known";
+    case BucklingAnswer::kNoStiffness:
+    case BucklingAnswer::kFactor:
+      break;
+  }
+  return "no stiffness in the states of its feet";
+}
+
+void write_second_order(Out out, const verdict::Assessment& assessment) {
+  if (const auto& second = assessment.second_order) {
+    fmt::format_to(out, "  second order  {}: {}\n", buckling_text(*second),
+                   verdict::name(second->trust));
+  }
+}
+
 std::string time_text(double seconds) {
   return seconds < 0.1 ? fmt::format("{:.0f} us", seconds * 1e6) : fmt::format("{:.2f} s", seconds);
 }
@@ -157,6 +186,9 @@ std::string write_report_text(const ReportEntry& entry) {
   write_modules(out, *entry.robot);
   write_stability(out, entry);
   write_loads(out, *entry.robot, assessment, entry.is_deformed);
+  if (!entry.is_deformed) {
+    write_second_order(out, assessment);
+  }
   write_solver(out, assessment, entry.seconds);
   if (entry.is_deformed) {
     text += deformed_text(entry);

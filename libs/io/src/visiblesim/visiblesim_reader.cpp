@@ -37,7 +37,7 @@ void read_parameters(XmlReading& reading, const pugi::xml_node& node) {
   for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
     const char* const name = parameter.visiblesim;
     if (const auto attribute = name == nullptr ? pugi::xml_attribute() : node.attribute(name)) {
-      document.material.*parameter.value = reading.number(node, attribute);
+      take_number(parameter, reading.number(node, attribute), document);
     }
   }
   if (const auto attribute = node.attribute(kSupportParameter)) {
@@ -82,7 +82,7 @@ void read_own_element(XmlReading& reading, const pugi::xml_node& node) {
   for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
     const auto attribute = node.attribute(std::string(parameter.key).c_str());
     if (attribute && parameter.visiblesim == nullptr) {
-      document.material.*parameter.value = reading.number(node, attribute);
+      take_number(parameter, reading.number(node, attribute), document);
     }
   }
   if (const auto answer = only_child(reading, node, "knownAnswer")) {

@@ -122,7 +122,7 @@ void add_parameters(pugi::xml_node parent, const Document& document, const base:
   for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
     const double value = document.material.*parameter.value;
     const bool is_mass = parameter.value == &model::Material::mass_kg;
-    if (parameter.visiblesim != nullptr && (is_mass || value != defaults.*parameter.value)) {
+    if (parameter.visiblesim != nullptr && (is_mass || is_said(parameter, defaults, document))) {
       add(node, parameter.visiblesim, value);
     }
   }
@@ -234,7 +234,7 @@ void add_own_element(pugi::xml_node world, const Document& document, const base:
   const model::Material defaults = default_material(document);
   for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
     const double value = document.material.*parameter.value;
-    if (parameter.visiblesim == nullptr && value != defaults.*parameter.value) {
+    if (parameter.visiblesim == nullptr && is_said(parameter, defaults, document)) {
       add(node, std::string(parameter.key).c_str(), value);
     }
   }

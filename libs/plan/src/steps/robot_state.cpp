@@ -17,6 +17,7 @@ using base::Cell;
 model::RobotSpec surroundings_of(const model::RobotSpec& spec) {
   return {.support_z = spec.support_z,
           .material = spec.material,
+          .is_modulus_stated = spec.is_modulus_stated,
           .lattice = spec.lattice,
           .floor = spec.floor,
           .obstacles = spec.obstacles,

@@ -12,6 +12,7 @@
 #include "factorization/precise_refinement.hpp"
 #include "holdfast/base/algebra.hpp"
 #include "holdfast/base/check.hpp"
+#include "second_order/stressed_beams.hpp"
 
 namespace holdfast::solver {
 namespace {
@@ -256,6 +257,49 @@ std::optional<std::vector<std::vector<Vec6<double>>>> DirectSystem::solve_each(
     column = by_module(column);
   }
   return columns;
+}
+
+std::optional<bool> DirectSystem::is_definite(const StressedBeams& beams, double factor) {
+  if (!lu_->factor(thread_count_)) {
+    return false;
+  }
+  if (factor == 0) {
+    return lu_->is_positive_definite();
+  }
+  BlockLu sum = *lu_;
+  add_stress(beams, factor, sum);
+  return sum.factor(thread_count_) && sum.is_positive_definite();
+}
+
+/// Makes K + factor K_G of K.
+void DirectSystem::add_stress(const StressedBeams& beams, double factor, BlockLu& lu) const {
+  std::vector<Mat6<double>> diagonal = diagonal_;
+  const auto add = [&](std::int32_t node, const Mat6<double>& block) {
+    if (node >= 0) {
+      base::add_to(diagonal[at(node)], scaled(block, factor));
+    }
+  };
+  std::size_t edge = 0;
+  for (const model::Connection connection : robot().connections()) {
+    const std::int32_t a = node_of(connection.a);
+    const std::int32_t b = node_of(connection.b);
+    const mechanics::EndTangent blocks = beams.blocks(connection);
+    add(a, blocks.pp);
+    add(b, blocks.qq);
+    if (a >= 0 && b >= 0) {
+      Mat6<double> between = beam().block_12(connection.direction);
+      base::add_to(between, scaled(blocks.pq, factor));
+      lu.set_edge(edge++, between);
+    }
+  }
+  for (std::size_t i = 0; i < facets().size(); ++i) {
+    const std::int32_t node = node_of_module_[facets()[i].module];
+    base::add_to(diagonal[at(node)], law().tangent(facets()[i]));
+    add(node, beams.block(i));
+  }
+  for (std::size_t node = 0; node < diagonal.size(); ++node) {
+    lu.set_diagonal(node, diagonal[node]);
+  }
 }
 
 /// The displacements under loads, both by module, with the factors that are there.

@@ -64,6 +64,8 @@ struct Document {
   std::string description;  ///< May be empty.
   std::int32_t support_z = 0;
   model::Material material;
+  /// Whether the elastic modulus is said to be what it is by default. Any other is stated anyway.
+  bool is_default_modulus_stated = false;
   std::vector<ModuleEntry> modules;
   std::vector<Step> steps;  ///< The first one is the planned step that is checked.
   std::optional<KnownAnswer> known_answer;
@@ -117,6 +119,17 @@ struct ReadOptions {
   bool allow_unknown = false;
   std::vector<Setting> settings = {};  ///< The last one of a key counts. Warnings name them.
 };
+
+/// Takes a number of the material that somebody states.
+void take_number(const model::MaterialParameter& parameter, double value, Document& document);
+
+/// Whether a writer has to say a number of the material: one that is not among the `defaults`, or
+/// the elastic modulus where it is stated.
+bool is_said(const model::MaterialParameter& parameter, const model::Material& defaults,
+             const Document& document);
+
+/// Whether somebody says what the elastic modulus is.
+bool is_modulus_stated(const Document& document);
 
 /// Reads any of the formats. Error::where is "line 12" or a JSON pointer such as "/modules/3".
 base::Result<ReadDocument> read_document(std::string_view text, const ReadOptions& options = {});

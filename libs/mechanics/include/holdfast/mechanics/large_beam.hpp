@@ -128,6 +128,17 @@ class LargeBeam {
   /// end_forces() at h u is h K u + h^2 second_order_forces(u) + O(h^3).
   EndForces second_order_forces(const base::Vec6<double>& u_p, const base::Vec6<double>& u_q) const;
 
+  /// The terms of second order of the stresses k e in the same motion.
+  base::Vec6<double> second_order_stress(const base::Vec6<double>& u_p,
+                                         const base::Vec6<double>& u_q) const;
+
+  /// The term of second order of middle_force() in a motion that begins with h u_p, h u_q, from the
+  /// forces on q of first and second order, global frame.
+  base::Vec6<double> second_order_middle_force(const base::Vec6<double>& u_p,
+                                               const base::Vec6<double>& u_q,
+                                               const base::Vec6<double>& first_on_q,
+                                               const base::Vec6<double>& second_on_q) const;
+
  private:
   base::Vec6<double> stiffness_{};
   double length_ = 0;

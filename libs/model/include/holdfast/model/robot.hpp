@@ -119,6 +119,9 @@ struct RobotSpec {
   /// Modules in this layer rest on a floor with their lower sides; none: there is no floor.
   std::optional<std::int32_t> support_z = 0;
   Material material = {};
+  /// Whether somebody says that the elastic modulus is what it is; one that is not the default is
+  /// stated anyway.
+  bool is_modulus_stated = false;
 
   base::Lattice lattice = base::kCubic;
   Touch floor = {};
@@ -195,6 +198,9 @@ class Robot {
   std::span<const Facet> facets() const { return facets_; }
 
   const Material& material() const { return material_; }
+
+  /// Whether the elastic modulus is known, and not Table I's, which is arbitrary.
+  bool is_modulus_stated() const { return is_modulus_stated_; }
 
   /// Half the width of every facet, mm; 0 is a point.
   double foot_half_width_mm() const { return foot_half_width_mm_; }
@@ -303,6 +309,7 @@ class Robot {
   ConnectionIndex connections_;
   std::vector<Facet> facets_;
   Material material_;
+  bool is_modulus_stated_ = false;
   double foot_half_width_mm_ = 0;
   std::array<double, 3> gravity_{};
   Loads loads_;

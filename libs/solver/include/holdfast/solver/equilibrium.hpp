@@ -13,6 +13,7 @@
 #include "holdfast/solver/linear_system.hpp"
 #include "holdfast/solver/options.hpp"
 #include "holdfast/solver/outcome.hpp"
+#include "holdfast/solver/second_order.hpp"
 
 /// Static equilibrium of a whole robot under its loads: Eq. (13) of [Piranda 2021], exactly.
 ///
@@ -114,6 +115,11 @@ class EquilibriumSolver {
   /// corner; nothing is sought for more than 24 facets, or eight with more than 128 modules, or
   /// where systems are iterated.
   std::vector<Equilibrium> seek_settled(const ContactOptions& contact);
+
+  /// What linear theory leaves out of a settled equilibrium of this robot, which is whole, with its
+  /// facets in their states by the exact law. Takes a factorization or two; where these take much
+  /// longer than an iteration, there is a bound instead of a factor.
+  SecondOrder find_second_order(const Equilibrium& settled, const SecondOrderOptions& options);
 
   /// Makes the solver ready for a law and returns the method that the next solve() under it begins
   /// with.

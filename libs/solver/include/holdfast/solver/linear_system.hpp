@@ -25,6 +25,8 @@
 /// displacements under as many loads as there are.
 namespace holdfast::solver {
 
+class StressedBeams;
+
 /// A facet of a robot, and the contact state that it is taken to be in. One that is bonded is stuck
 /// and held, whatever the law.
 struct FacetState {
@@ -217,6 +219,14 @@ class LinearSystem {
   /// solution fails. The loads that were set are forgotten.
   [[nodiscard]] virtual std::optional<std::vector<std::vector<Vec>>> solve_each(
       std::span<const model::Loads> loads, double tolerance);
+
+  /// Whether K + factor K_G is positive definite, K_G being the geometric stiffness of the beams,
+  /// by a factorization for the present facets; none if there is none. With a factor of 0: whether
+  /// K is.
+  [[nodiscard]] virtual std::optional<bool> is_definite(const StressedBeams& /*beams*/,
+                                                        double /*factor*/) {
+    return std::nullopt;
+  }
 
   /// Whether solutions are exact but for rounding, whatever the tolerance.
   virtual bool is_exact() const = 0;

@@ -22,6 +22,13 @@ enum class Method : std::uint8_t {
   kMultigrid,
 };
 
+/// What verdict::assess() finds out about how far linear theory goes.
+enum class SecondOrderWish : std::uint8_t {
+  kNothing,
+  kCheck,   ///< Whether it suffices: the buckling factor where it is below 10.
+  kFactor,  ///< The same, and the buckling factor whatever it is.
+};
+
 /// What holds for all equilibria that are sought of one robot.
 struct EquilibriumOptions {
   /// Memory for the solver; a robot that needs more gets the outcome kTooLarge.
@@ -50,6 +57,9 @@ struct EquilibriumOptions {
   /// Makes verdict::assess() find how far gravity may turn and which friction would do where
   /// supports are anywhere. Only reports need them.
   bool has_rigid_figures = true;
+  /// Makes verdict::assess() do the second-order check of whole robots. Planners, which ask very
+  /// often, go without.
+  SecondOrderWish second_order = SecondOrderWish::kNothing;
   /// The direct solver gives up (kTooLarge) where more blocks than this fill in per node.
   std::size_t fill_max = std::numeric_limits<std::size_t>::max();
   /// Called after every iteration of multigrid with the error that is left, as a share of the

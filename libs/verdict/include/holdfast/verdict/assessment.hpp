@@ -12,6 +12,7 @@
 #include "holdfast/solver/equilibrium.hpp"
 #include "holdfast/verdict/reason.hpp"
 #include "holdfast/verdict/rigid_body.hpp"
+#include "holdfast/verdict/second_order.hpp"
 
 /// Gives the verdict on a robot with its planned step, and everything that it rests on.
 namespace holdfast::verdict {
@@ -141,7 +142,9 @@ struct Assessment {
   /// else empty.
   std::vector<double> gaps_mm;
   std::optional<OpenGaps> gaps;  ///< None if no gap is too wide.
-  std::optional<Lean> lean;      ///< None where the polygon does not decide, or nothing holds.
+  /// Whether linear theory suffices; none if that was not asked, or nothing holds the robot.
+  std::optional<SecondOrder> second_order;
+  std::optional<Lean> lean;  ///< None where the polygon does not decide, or nothing holds.
   /// All loads could grow by this factor before the first connection breaks; none without `worst`.
   std::optional<double> weight_factor;
   LoadRange load_ratio_range;  ///< Void where load_ratio_max is.
@@ -187,6 +190,11 @@ Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& o
 /// threads; 0: as many as the machine has cores.
 Assessment assess_equilibrium(const model::Robot& robot, solver::Equilibrium equilibrium,
                               int thread_count = 0);
+
+/// Why a robot that linear theory calls safe, or overloaded, may be neither: the reason of an
+/// undecided verdict. None where linear theory is trusted or its trust not known, where nobody said
+/// what the elastic modulus is, or where all that bending does leaves the verdict as it is.
+std::optional<Reason> second_order_doubt(const Assessment& assessment);
 
 /// Returns "safe", "overload", "unstable" or "undecided".
 const char* name(Verdict verdict);

@@ -62,9 +62,24 @@ enum class ReasonCode : std::uint8_t {
   kTouchesFloor,   ///< The factor, index of the module.
   kTouchesItself,  ///< The factor, indices of two modules.
   kMassMoves,      ///< By much of its margin: how far, mm, the margin, and what is left of it.
+  /// Linear theory does not suffice: a SecondOrderDoubt, the buckling factor or 0, the largest load
+  /// ratio, and the same to second order.
+  kSecondOrder,
+  /// Linear theory is not trusted, but the verdict stands: 1 if that is only not certain, the
+  /// buckling factor or 0, the largest load ratio, the same to second order; and 0 where the elastic
+  /// modulus is stated, else that which would be needed, MPa, or -1 where that is not known.
+  kBendingMatters,
 };
 
-inline constexpr int kReasonCodeCount = static_cast<int>(ReasonCode::kMassMoves) + 1;
+inline constexpr int kReasonCodeCount = static_cast<int>(ReasonCode::kBendingMatters) + 1;
+
+/// Why linear theory does not suffice for a verdict.
+enum class SecondOrderDoubt : std::uint8_t {
+  kNoStiffness,  ///< In their states the facets leave the robot without stiffness.
+  kBuckles,      ///< The buckling factor is not above 1.
+  kLoads,        ///< Bending moves the largest load ratio to the other side of 1.
+  kTilts,        ///< Bent, a foot would tilt, or the centre of mass is over an edge.
+};
 
 /// One reason for a verdict, as data. io::reason_text() makes a sentence of it.
 struct Reason {

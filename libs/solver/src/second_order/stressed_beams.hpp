@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "holdfast/base/algebra.hpp"
+#include "holdfast/host/team.hpp"
+#include "holdfast/mechanics/large_beam.hpp"
+#include "holdfast/model/robot.hpp"
+#include "holdfast/solver/linear_system.hpp"
+
+namespace holdfast::solver {
+
+/// The geometric stiffness K_G of a robot's beams and facets under the stresses of displacements
+/// u1, to which it keeps a reference, as to the system.
+class StressedBeams {
+ public:
+  using Vec = base::Vec6<double>;
+  using Vecs = std::vector<Vec>;
+
+  StressedBeams(const LinearSystem& system, const Vecs& displacement, int thread_count);
+
+  /// The blocks of a connection.
+  mechanics::EndTangent blocks(const model::Connection& connection) const;
+
+  /// The block of a facet, which stands on the diagonal.
+  base::Mat6<double> block(std::size_t facet) const;
+
+  /// -K_G x, by module; what fixed modules would take is zero.
+  Vecs softening(const Vecs& x);
+
+  /// The part of second order of the forces at u1, by module; zero for fixed modules.
+  Vecs second_order_forces();
+
+  /// K x by module, beam by beam.
+  Vecs stiffness_times(const Vecs& x);
+
+ private:
+  using Bases = std::array<mechanics::EndTangent, 6>;  ///< For unit stresses.
+
+  const model::Robot& robot() const { return system_.robot(); }
+
+  const Bases& bases(base::Direction direction) const {
+    return bases_[static_cast<std::size_t>(base::index(direction))];
+  }
+
+  const mechanics::LargeBeam& beam(base::Direction direction) const {
+    return beams_[static_cast<std::size_t>(base::index(direction))];
+  }
+
+  template <class OnPair>
+  Vecs sum_over_neighbours(const OnPair& on_pair);
+
+  const LinearSystem& system_;
+  const Vecs& displacement_;
+  host::Team team_;
+  std::vector<mechanics::LargeBeam> beams_;  ///< By direction.
+  std::vector<Bases> bases_;                 ///< By direction.
+};
+
+}  // namespace holdfast::solver
