@@ -12,6 +12,7 @@
 #include "page.hpp"
 #include "progress.hpp"
 #include "reading.hpp"
+#include "scatter_options.hpp"
 
 namespace holdfast::cli {
 namespace {
@@ -33,6 +34,7 @@ struct CheckArguments {
   bool is_proof_wanted = false;
   bool is_limit_wanted = false;
   bool are_remedies_wanted = false;
+  ScatterOptions scatter;
   double limit_seconds = limit::LimitOptions{}.seconds_max;
   int thread_count = 0;
   double memory_gb = 4;
@@ -87,10 +89,11 @@ class CheckRun {
     const CheckOptions how = check_options(structure, file);
     const CheckResult result = check(structure, how);
     const auto remedies = seek_remedies(structure, result, how, file);
+    const MoreAnswers more = find_more(structure, result);
     ++counts_[static_cast<std::size_t>(result.assessment.verdict)];
     if (shows_text()) {
       show(structure, result, file);
-      fmt::print("{}", remedies ? remedies_text(*remedies) : "");
+      fmt::print("{}{}", remedies ? remedies_text(*remedies) : "", more.text);
     }
     add_report([&](std::ostream& out) {
       write_report_json(out, structure, result, report_options(options_.json),
@@ -98,9 +101,35 @@ class CheckRun {
                           if (remedies) {
                             write_remedies_member(json, *remedies);
                           }
+                          more.write(json);
                         });
     });
     write_files(structure, result);
+  }
+
+  /// What options of their own files add to the report.
+  struct MoreAnswers {
+    std::string text;
+    std::function<void(io::JsonStream&)> write;
+  };
+
+  MoreAnswers find_more(const Structure& structure, const CheckResult& result) {
+    if (!options_.scatter.is_wanted()) {
+      return {.text = "", .write = [](io::JsonStream&) {}};
+    }
+    const auto scatter = read_scatter(options_.scatter);
+    const auto reliability = find_reliability(result, scatter);
+    count_exit(exit_code_of(options_.scatter, reliability));
+    return {.text = reliability_text(structure.robot, reliability),
+            .write = [&structure, scatter, reliability](io::JsonStream& json) {
+              write_reliability_member(json, structure.robot, scatter, reliability);
+            }};
+  }
+
+  /// Notes the exit code of an answer beside the verdict.
+  void count_exit(int code) {
+    unsafe_count_ += code == kExitUnsafe ? 1 : 0;
+    undecided_count_ += code == kExitUndecided ? 1 : 0;
   }
 
   std::optional<plan::Remedies> seek_remedies(const Structure& structure, const CheckResult& result,
@@ -284,13 +313,18 @@ class CheckRun {
       if (counts_[static_cast<std::size_t>(verdict)] > 0) {
         return holdfast::exit_code(verdict);
       }
+      if (verdict == Verdict::kUnstable && unsafe_count_ > 0) {
+        return kExitUnsafe;
+      }
     }
-    return kExitSafe;
+    return undecided_count_ > 0 ? kExitUndecided : kExitSafe;
   }
 
   const CheckArguments& options_;
   std::array<std::size_t, 4> counts_{};
   std::size_t bad_count_ = 0;
+  std::size_t unsafe_count_ = 0;     ///< By answers beside the verdict,
+  std::size_t undecided_count_ = 0;  ///< as these.
   std::optional<host::OutputFile> json_;
   std::size_t report_count_ = 0;
   Progress progress_;
@@ -347,6 +381,7 @@ Command add_check(CLI::App& app) {
   command->add_flag("--remedies", options->are_remedies_wanted,
                     "Find what would make an unsafe structure hold: one more module, a prop, a "
                     "module fixed or taken away, stronger connections");
+  add_scatter_options(*command, options->scatter);
   add_quiet(*command, options->is_quiet);
   command->add_flag("--bonded", options->is_bonded,
                     "Treat the ground as glued: supports can neither lift nor tilt");
