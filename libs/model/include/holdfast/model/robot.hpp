@@ -100,6 +100,14 @@ struct CarriedMass {
   friend bool operator==(const CarriedMass&, const CarriedMass&) = default;
 };
 
+/// A side of a module that would touch the environment, but does not: a foot that is lost.
+struct LostFacet {
+  base::Cell cell;
+  base::Direction direction = base::Direction::kMinusZ;
+
+  friend bool operator==(const LostFacet&, const LostFacet&) = default;
+};
+
 /// The specification that a robot is made from, in any order.
 struct RobotSpec {
   std::vector<base::Cell> existing = {};
@@ -124,6 +132,7 @@ struct RobotSpec {
   std::vector<OwnMass> own_masses = {};  ///< All others weigh what their kind does.
   std::vector<Payload> payloads = {};
   std::vector<CarriedMass> carried = {};
+  std::vector<LostFacet> lost_facets = {};  ///< Robot::facets() has all but these.
 };
 
 /// A robot that can be computed: connected, supported, no two modules in one cell. Immutable.
