@@ -24,9 +24,15 @@ _holdfast() {
         --html) files=1 ;;
         --certificate) files=1 ;;
         --limit-seconds) : ;;
+        --scatter) : ;;
+        --scatter-common) : ;;
+        --scatter-law) : ;;
+        --probability) : ;;
+        --lose) : ;;
+        --lose-seconds) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --json --connections --csv --svg --size --title --grey --view --no-legend --vtk --html --certificate --prove --limit --limit-seconds --remedies -q --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --json --connections --csv --svg --size --title --grey --view --no-legend --vtk --html --certificate --prove --limit --limit-seconds --remedies --scatter --scatter-common --scatter-law --probability --lose-one --lose --lose-seconds -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     steps)
