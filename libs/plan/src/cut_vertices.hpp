@@ -16,7 +16,7 @@ struct DepthFirstTree {
   std::vector<std::int32_t> sequence = {};  ///< Nodes in the order of their visit.
   std::vector<std::int32_t> order = {};     ///< By node: its place in that, or -1.
   std::vector<std::int32_t> parent = {};    ///< By node, -1 for the root.
-  /// By node: the first visited of what edges outside the tree reach from the nodes below it.
+  /// The first visited, by node, of what edges outside the tree reach from the nodes below it.
   std::vector<std::int32_t> low = {};
 
   /// Whether the nodes below `child` and itself come loose if its parent is lost.

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -238,10 +237,6 @@ TEST(Losses, of_cubes_on_a_floor_are_as_checked_without) {
     const model::RobotSpec spec = with_ratio(test::random_robot(seed, 4, 24), ratio);
     expect_as_checked(spec, "seed " + std::to_string(seed), count);
   }
-  RecordProperty("losses", static_cast<int>(count.losses));
-  std::printf("%zu robots %zu losses %zu fatal %zu falling %zu bounds %zu checks %zu undecided\n",
-              count.robots, count.losses, count.fatal, count.falling, count.bounds, count.checks,
-              count.undecided);
   EXPECT_GT(count.robots, seeds / 3);
   EXPECT_GT(count.bounds, count.losses / 50);
   EXPECT_GT(count.fatal - count.falling, 0U);
@@ -256,10 +251,9 @@ TEST(Losses, on_all_lattices_and_supports_are_as_checked_without) {
         with_ratio(test::general_robot(test::kLattices[seed % 4], seed), ratio);
     expect_as_checked(spec, "seed " + std::to_string(seed), count);
   }
-  std::printf("%zu robots %zu losses %zu fatal %zu falling %zu bounds %zu checks %zu undecided\n",
-              count.robots, count.losses, count.fatal, count.falling, count.bounds, count.checks,
-              count.undecided);
   EXPECT_GT(count.robots, seeds / 4);
+  EXPECT_GT(count.fatal - count.falling, 0U);
+  EXPECT_GT(count.checks, 0U);
 }
 
 }  // namespace

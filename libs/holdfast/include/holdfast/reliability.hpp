@@ -11,11 +11,12 @@
 /// The facade's answer to "how sure?": the probability that every connection of a checked structure
 /// holds where strengths scatter.
 ///
-///     const auto reliability = holdfast::find_reliability(holdfast::check(structure), {.cv =
-///     0.1}); if (reliability) { ... reliability->holds ... }
+///     const auto sure = holdfast::find_reliability(holdfast::check(structure), {.cv = 0.1});
+///     if (sure) { ... sure->holds ... }
 namespace holdfast {
 
-/// As verdict::find_reliability(): none where the robot is not known to stay, or no load is known.
+/// Says how sure it is, as verdict::find_reliability() does: none where the robot is not known to
+/// stay, or no load is known.
 std::optional<verdict::Reliability> find_reliability(const CheckResult& result,
                                                      const verdict::StrengthScatter& scatter);
 

@@ -32,7 +32,7 @@ using verdict::Verdict;
 /// A core serves robots of no more modules: larger ones take long to be assessed anyway.
 constexpr std::size_t kLossCoreCountMax = 2000;
 
-/// So many losses are judged between two looks at the clock.
+/// The number of losses that are judged between two looks at the clock.
 constexpr std::size_t kLossStride = 256;
 
 /// The worst loss is sought among so many that are known by a bound alone.

@@ -35,7 +35,7 @@ std::string_view name(LossKind kind);
 struct Loss {
   LossKind kind = LossKind::kConnection;
   std::array<base::Cell, 2> cells = {};  ///< Of a connection; else the first is the module's.
-  /// Of a foot, from the module; none if that was fixed.
+  /// The direction of a foot from the module; none if that was fixed.
   std::optional<base::Direction> direction = {};
 
   friend bool operator==(const Loss&, const Loss&) = default;
@@ -67,14 +67,14 @@ struct LossOptions {
   std::function<void(std::size_t done, std::size_t count)> progress = {};
 };
 
-/// All losses of one part of a robot.
+/// What follows from the loss of each part of a robot.
 struct LossReport {
   Judgement whole;             ///< Of the robot as it is; if it is not safe, no loss is tried.
   std::size_t loss_count = 0;  ///< There are so many.
   std::vector<LossAnswer> fatal = {};      ///< Those that bring it down, in the order of its parts.
   std::vector<LossAnswer> undecided = {};  ///< Neither safe nor known to be fatal.
-  /// With the largest load ratio of those after which all is held; bounds count only where nothing
-  /// else is known.
+  /// The loss with the largest load ratio of those after which all is held; bounds count only where
+  /// nothing else is known.
   std::optional<LossAnswer> worst = {};
   std::size_t bound_count = 0;  ///< So many are safe by a bound,
   std::size_t check_count = 0;  ///< and so many took a check.

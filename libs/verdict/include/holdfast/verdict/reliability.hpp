@@ -97,7 +97,7 @@ inline constexpr std::size_t kLikeliestMax = 10;
 std::optional<Reliability> find_reliability(const Assessment& assessment,
                                             const StrengthScatter& scatter);
 
-/// The same for load ratios that are exact.
+/// Says it for load ratios that are exact.
 Reliability find_reliability(std::span<const double> load_ratios, const StrengthScatter& scatter);
 
 }  // namespace holdfast::verdict
