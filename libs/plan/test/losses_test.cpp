@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "bounds/loop_bound.hpp"
 #include "general_robot.hpp"
 #include "random_robot.hpp"
 #include "seeds.hpp"
@@ -254,6 +255,49 @@ TEST(Losses, on_all_lattices_and_supports_are_as_checked_without) {
   EXPECT_GT(count.robots, seeds / 4);
   EXPECT_GT(count.fatal - count.falling, 0U);
   EXPECT_GT(count.checks, 0U);
+}
+
+/// No bound by loops is below what a check without the connection finds.
+TEST(Losses, by_loops_are_bounds_of_what_is_carried) {
+  std::size_t compared_count = 0;
+  int lattice_count = 0;
+  for (const base::Lattice& lattice : test::kLattices) {
+    model::RobotSpec block{.lattice = lattice};
+    for (std::int32_t x = 0; x < 4; ++x) {
+      for (std::int32_t y = 0; y < 4; ++y) {
+        for (std::int32_t z = 0; z < 4; ++z) {
+          const Cell cell{x, y, z};
+          block.existing.push_back(cell);
+        }
+      }
+    }
+    const auto robot = model::Robot::create(block);
+    if (!robot) {
+      continue;
+    }
+    const model::RobotSpec spec = with_ratio(block, 0.05);
+    const model::Robot strong = model::Robot::create(spec).value();
+    const verdict::Assessment solved = verdict::assess(strong);
+    const auto loops = LoopBound::make(spec, strong, solved, false);
+    if (!loops) {
+      continue;
+    }
+    for (const model::Connection& pair : strong.connections()) {
+      const auto bound = loops->without(pair);
+      if (bound) {
+        const Cell& a = strong.modules()[base::at(pair.a)].cell;
+        const Cell& b = strong.modules()[base::at(pair.b)].cell;
+        const Expected exact =
+            check_without(spec, {.kind = LossKind::kConnection, .cells = {a, b}});
+        EXPECT_EQ(exact.verdict, Verdict::kSafe) << model::text(a) << model::text(b);
+        EXPECT_LE(*exact.load_ratio_max, *bound) << model::text(a) << model::text(b);
+        ++compared_count;
+      }
+    }
+    lattice_count += 1;
+  }
+  EXPECT_GT(lattice_count, 1);
+  EXPECT_GT(compared_count, 100U);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "bounds/loop_bound.hpp"
 #include "equilibria/carried_force.hpp"
 #include "holdfast/host/team.hpp"
 #include "holdfast/plan/candidates.hpp"
@@ -83,9 +84,7 @@ LossJudge::LossJudge(const model::RobotSpec& spec, const model::Robot& robot,
 }
 
 bool LossJudge::prepare(std::span<const LostPart> parts) {
-  if (solved_.verdict != Verdict::kSafe || solved_.several ||
-      solved_.contact_model == verdict::ContactModel::kUnilateral ||
-      solved_.stability_rule == verdict::StabilityRule::kContactForces) {
+  if (!is_stuck_and_safe(solved_, options_.is_bonded)) {
     return false;
   }
   influence_ = solver::Influence::make(robot_, options_);

@@ -12,6 +12,7 @@
 #include <span>
 #include <utility>
 
+#include "bounds/loop_bound.hpp"
 #include "holdfast/base/check.hpp"
 #include "holdfast/host/team.hpp"
 #include "holdfast/model/cell_index.hpp"
@@ -138,12 +139,17 @@ class LossSearch {
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       look_at(i);
     }
-    if (!options_.is_by_checks && left_count() > 0) {
+    if (!options_.is_by_checks && robot_.modules().size() >= options_.loop_count_min) {
+      bound_by_loops(solved);
+    }
+    if (!options_.is_by_checks && left_count() > 0 && !patience_.is_over()) {
       judge_ = LossJudge::make(spec_, robot_, solved, parts_, options_.equilibrium);
     }
     if (judge_) {
-      bound_all();
-      report.bound_count = count_bounds();
+      bound_each([&](const LostPart& part) { return judge_->bound(part); });
+    }
+    report.bound_count = count_bounds();
+    if (judge_) {
       judge_all(left(), false);
     }
     check_rest(report);
@@ -181,11 +187,24 @@ class LossSearch {
         answers_, [](const auto& answer) { return answer && answer->is_bound; }));
   }
 
-  void bound_all() {
+  void bound_by_loops(const verdict::Assessment& solved) {
+    const auto loops = LoopBound::make(spec_, robot_, solved, options_.equilibrium.is_bonded);
+    if (loops) {
+      bound_each([&](const LostPart& part) {
+        return part.loss.kind == LossKind::kConnection && !part.is_apart
+                   ? loops->without(part.change.lost_beams.front())
+                   : std::nullopt;
+      });
+    }
+  }
+
+  /// Those that are safe by a bound(part).
+  template <class Bound>
+  void bound_each(const Bound& bound_of) {
     host::Team team(options_.equilibrium.thread_count, parts_.size());
     team.share(0, parts_.size(), [&](std::size_t begin, std::size_t end) {
       for (; begin < end; ++begin) {
-        const auto bound = answers_[begin] ? std::nullopt : judge_->bound(parts_[begin]);
+        const auto bound = answers_[begin] ? std::nullopt : bound_of(parts_[begin]);
         if (bound) {
           answers_[begin] = answer_of(begin);
           answers_[begin]->verdict = Verdict::kSafe;
@@ -309,6 +328,9 @@ class LossSearch {
     std::ranges::stable_sort(order, std::ranges::greater(),
                              [&](std::size_t i) { return *answers_[i]->load_ratio_max; });
     double largest = largest_ratio();
+    if (!judge_) {
+      return;
+    }
     const std::size_t count = std::min(order.size(), kRefinedMax);
     for (std::size_t first = 0; first < count; first += solver::kLaneCount) {
       if (*answers_[order[first]]->load_ratio_max <= largest) {

@@ -62,6 +62,8 @@ struct LossOptions {
   std::array<bool, kLossKindCount> kinds = {true, true, true};  ///< Those that are tried.
   /// Losses that are not judged by then are undecided.
   double seconds_max = std::numeric_limits<double>::infinity();
+  /// Robots of so many modules are first looked at by bounds that need no factorization.
+  std::size_t loop_count_min = 3000;
   bool is_by_checks = false;  ///< Judges every loss by a check of what is left: to compare with.
   /// Called now and then with how many losses are judged, of how many.
   std::function<void(std::size_t done, std::size_t count)> progress = {};
