@@ -220,6 +220,11 @@ def commands(scenarios, tests):
     yield from (['check', path, '--deformed'] for path in (safe, topples))
     yield ['check', safe, '--deformed', '--up-to', '1', '--set', 'elastic_modulus_mpa=0.001']
     yield from (['check', path, '--remedies'] for path in (safe, breaks, topples))
+    yield from (['check', path, '--scatter', '10%', '--lose-one'] for path in (safe, topples))
+    yield ['check', general[0], '--scatter', '5%', '--scatter-common', '3%', '--lose-one']
+    yield ['check', 'cube.json', '--lose-one', '--lose-seconds', '0']
+    yield from (['check', 'cube.json', '--lose-one', '--lose', part]
+                for part in ('modules', 'feet'))
     yield ['check', f'{tests}/physics/two_paths.json']
     yield ['check', 'slender.json', '--connections', '3']
     yield ['steps', f'{plan}/walk_over_beam.json']

@@ -28,6 +28,15 @@ _holdfast() {
         --threads) : ;;
         --memory) : ;;
         *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --json --connections --csv --svg --size --title --grey --view --no-legend --vtk --html --certificate --prove --limit --limit-seconds --remedies --deformed --up-to -q --quiet --bonded --threads --memory"; else files=1; fi ;;
+        --scatter) : ;;
+        --scatter-common) : ;;
+        --scatter-law) : ;;
+        --probability) : ;;
+        --lose) : ;;
+        --lose-seconds) : ;;
+        --threads) : ;;
+        --memory) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --json --connections --csv --svg --size --title --grey --view --no-legend --vtk --html --certificate --prove --limit --limit-seconds --remedies --scatter --scatter-common --scatter-law --probability --lose-one --lose --lose-seconds -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     steps)

@@ -9,9 +9,11 @@
 #include "figure.hpp"
 #include "file_clash.hpp"
 #include "holdfast/trial.hpp"
+#include "lose_one_options.hpp"
 #include "page.hpp"
 #include "progress.hpp"
 #include "reading.hpp"
+#include "scatter_options.hpp"
 
 namespace holdfast::cli {
 namespace {
@@ -36,6 +38,8 @@ struct CheckArguments {
   bool are_remedies_wanted = false;
   bool is_deformed_wanted = false;
   double factor_max = large::Options{}.factor_max;
+  ScatterOptions scatter;
+  LoseOneArguments lose_one;
   double limit_seconds = limit::LimitOptions{}.seconds_max;
   int thread_count = 0;
   double memory_gb = 4;
@@ -85,16 +89,19 @@ class CheckRun {
       return;
     }
     Structure structure = std::move(loaded).value();
-    if (options_.html.empty() && !options_.are_remedies_wanted) {  // All else needs the robot only.
+    const bool is_document_needed = !options_.html.empty() || options_.are_remedies_wanted ||
+                                    options_.lose_one.is_wanted;
+    if (!is_document_needed) {
       structure.document.modules = std::vector<io::ModuleEntry>();
     }
     const CheckOptions how = check_options(structure, file);
     const CheckResult result = check(structure, how);
     const auto remedies = seek_remedies(structure, result, how, file);
+    const MoreAnswers more = find_more(structure, result, how, file);
     ++counts_[static_cast<std::size_t>(result.assessment.verdict)];
     if (shows_text()) {
       show(structure, result, file);
-      fmt::print("{}", remedies ? remedies_text(*remedies) : "");
+      fmt::print("{}{}", remedies ? remedies_text(*remedies) : "", more.text);
     }
     add_report([&](std::ostream& out) {
       write_report_json(out, structure, result, report_options(options_.json),
@@ -102,9 +109,60 @@ class CheckRun {
                           if (remedies) {
                             write_remedies_member(json, *remedies);
                           }
+                          for (const auto& write : more.members) {
+                            write(json);
+                          }
                         });
     });
     write_files(structure, result);
+  }
+
+  /// What options of their own files add to the report.
+  struct MoreAnswers {
+    std::string text;
+    std::vector<std::function<void(io::JsonStream&)>> members;
+  };
+
+  MoreAnswers find_more(const Structure& structure, const CheckResult& result,
+                        const CheckOptions& how, const std::string& file) {
+    MoreAnswers more;
+    if (options_.scatter.is_wanted()) {
+      const auto scatter = read_scatter(options_.scatter);
+      const auto reliability = find_reliability(result, scatter);
+      count_exit(exit_code_of(options_.scatter, reliability));
+      more.text += reliability_text(structure.robot, reliability);
+      more.members.emplace_back([&structure, scatter, reliability](io::JsonStream& json) {
+        write_reliability_member(json, structure.robot, scatter, reliability);
+      });
+    }
+    if (options_.lose_one.is_wanted) {
+      LoseOneOptions options = lose_one_options(options_.lose_one, how);
+      options.progress = counting(file, "part");
+      const plan::LossReport report = lose_one(structure, options);
+      count_exit(exit_code_of(report));
+      more.text += lose_one_text(report);
+      more.members.emplace_back([&structure, report](io::JsonStream& json) {
+        write_lose_one_member(json, structure.robot, report);
+      });
+    }
+    return more;
+  }
+
+  /// A progress that says how many of what are judged.
+  std::function<void(std::size_t, std::size_t)> counting(const std::string& file,
+                                                         const char* what) {
+    return [this, file, what](std::size_t done, std::size_t count) {
+      progress_.show([&] {
+        return fmt::format("{}: {} of {} judged", io::one_line(file), done,
+                           host::counted(count, what));
+      });
+    };
+  }
+
+  /// Notes the exit code of an answer beside the verdict.
+  void count_exit(int code) {
+    unsafe_count_ += code == kExitUnsafe ? 1 : 0;
+    undecided_count_ += code == kExitUndecided ? 1 : 0;
   }
 
   std::optional<plan::Remedies> seek_remedies(const Structure& structure, const CheckResult& result,
@@ -113,12 +171,7 @@ class CheckRun {
     if (!options_.are_remedies_wanted || !is_said || result.assessment.verdict == Verdict::kSafe) {
       return std::nullopt;
     }
-    return find_remedies(structure, result, how, [&](std::size_t done, std::size_t count) {
-      progress_.show([&] {
-        return fmt::format("{}: {} of {} judged", io::one_line(file), done,
-                           host::counted(count, "change"));
-      });
-    });
+    return find_remedies(structure, result, how, counting(file, "change"));
   }
 
   void write_files(const Structure& structure, const CheckResult& result) {
@@ -291,13 +344,18 @@ class CheckRun {
       if (counts_[static_cast<std::size_t>(verdict)] > 0) {
         return holdfast::exit_code(verdict);
       }
+      if (verdict == Verdict::kUnstable && unsafe_count_ > 0) {
+        return kExitUnsafe;
+      }
     }
-    return kExitSafe;
+    return undecided_count_ > 0 ? kExitUndecided : kExitSafe;
   }
 
   const CheckArguments& options_;
   std::array<std::size_t, 4> counts_{};
   std::size_t bad_count_ = 0;
+  std::size_t unsafe_count_ = 0;     ///< By answers beside the verdict,
+  std::size_t undecided_count_ = 0;  ///< as these.
   std::optional<host::OutputFile> json_;
   std::size_t report_count_ = 0;
   Progress progress_;
@@ -376,6 +434,8 @@ Command add_check(CLI::App& app) {
                     "Find what would make an unsafe structure hold: one more module, a prop, a "
                     "module fixed or taken away, stronger connections");
   add_deformed(*command, *options);
+  add_scatter_options(*command, options->scatter);
+  add_lose_one_options(*command, options->lose_one);
   add_quiet(*command, options->is_quiet);
   command->add_flag("--bonded", options->is_bonded,
                     "Treat the ground as glued: supports can neither lift nor tilt");

@@ -251,6 +251,10 @@ std::optional<std::string> Robot::touch(const RobotSpec& spec) {
       if (!is_floor && (obstacle == CellIndex::kNone || !is_free)) {
         continue;
       }
+      if (std::ranges::find(spec.lost_facets, LostFacet{module.cell, direction}) !=
+          spec.lost_facets.end()) {
+        continue;
+      }
       facets_.push_back({.module = static_cast<std::int32_t>(i),
                          .direction = direction,
                          .touch = obstacle == CellIndex::kNone

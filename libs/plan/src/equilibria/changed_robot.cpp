@@ -3,11 +3,13 @@
 #include "equilibria/changed_robot.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <utility>
 
 #include "dense.hpp"
+#include "equilibria/carried_force.hpp"
 #include "holdfast/solver/second_state.hpp"
 
 namespace holdfast::plan {
@@ -68,8 +70,7 @@ class ChangedRobot::System {
       const std::size_t place = place_of(change.links[i].host);
       std::vector<Unknown> six(6);
       for (std::size_t k = 0; k < 6; ++k) {
-        six[k] = {.place = place,
-                  .along = base::unit<double>(static_cast<int>(k)),
+        six[k] = {.pushes = {{.place = place, .by = base::unit<double>(static_cast<int>(k))}},
                   .constant = new_modules.load(i)[k]};
       }
       for (std::size_t j = 0; j < change.links.size(); ++j) {
@@ -83,17 +84,45 @@ class ChangedRobot::System {
     }
   }
 
-  /// A facet of the core in another state. Only some components of its force change by that.
-  void add_facet(const FacetState& facet, const ContactState& state) {
+  /// A beam of the core that is lost: what it would carry is put on its ends once more.
+  void add_lost(const model::Connection& beam) {
+    const auto& law = core_.beam();
+    const std::array places = {place_of(base::at(beam.a)), place_of(base::at(beam.b))};
+    const Vec6<double> stiffness = middle_stiffness(law);
+    const std::array along = {base::matrix_of<double>([&](const Vec6<double>& u) {
+                                return law.middle_force(beam.direction, u, {});
+                              }),
+                              base::matrix_of<double>([&](const Vec6<double>& u) {
+                                return law.middle_force(beam.direction, {}, u);
+                              })};
+    for (int row = 0; row < 6; ++row) {
+      Unknown unknown;
+      for (std::size_t end = 0; end < 2; ++end) {
+        Vec6<double> push = row_of(along[end], row);
+        Vec6<double> pull{};
+        base::add_times(pull, -1, push);
+        for (double& component : push) {
+          component /= stiffness[base::at(row)];
+        }
+        unknown.pushes.push_back({.place = places[end], .by = push});
+        unknown.pulls.push_back({.place = places[end], .by = pull});
+      }
+      unknowns_.push_back(std::move(unknown));
+    }
+  }
+
+  /// A facet of the core in another state, or in none if it is lost. Only some components of its
+  /// force change by that.
+  void add_facet(const FacetState& facet, const std::optional<ContactState>& state) {
     const std::size_t place = place_of(facet.module);
     const auto& ground = core_.law().ground();
     const Mat6<double> before = mechanics::corrector(ground, facet.state, true);
-    const Mat6<double> after = mechanics::corrector(ground, state, true);
+    const Mat6<double> after = state ? mechanics::corrector(ground, *state, true) : Mat6<double>{};
     const Mat6<double> trial = base::matrix_of<double>(
         [&](const Vec6<double>& u) { return core_.law().trial_force(facet, u); });
     for (int row = 0; row < 6; ++row) {
-      Unknown unknown{.place = place, .along = row_of(trial, row)};
-      for (double& component : unknown.along) {
+      Vec6<double> along = row_of(trial, row);
+      for (double& component : along) {
         component /= ground.stiffness[static_cast<std::size_t>(row)];
       }
       Vec6<double> by{};
@@ -101,8 +130,8 @@ class ChangedRobot::System {
         base::add_times(by, after.at(row, k) - before.at(row, k), row_of(trial, k));
       }
       if (by != Vec6<double>{}) {
-        unknown.pulls.push_back({.place = place, .by = by});
-        unknowns_.push_back(std::move(unknown));
+        unknowns_.push_back(
+            {.pushes = {{.place = place, .by = along}}, .pulls = {{.place = place, .by = by}}});
         ++yielding_count_;
       }
     }
@@ -119,8 +148,11 @@ class ChangedRobot::System {
     for (std::size_t column = 0; column < size; ++column) {
       const Unknown& unknown = unknowns_[column];
       for (std::size_t i = 0; i < places_.size(); ++i) {
-        moved[i] =
-            core_.answer(places_[i], {.module = places_[unknown.place], .load = unknown.along});
+        moved[i] = {};
+        for (const AtPlace& push : unknown.pushes) {
+          base::add_to(moved[i],
+                       core_.answer(places_[i], {.module = places_[push.place], .load = push.by}));
+        }
       }
       for (std::size_t row = 0; row < size; ++row) {
         system.at(row, column) = (row == column ? 1 : 0) + pull(unknowns_[row], moved);
@@ -149,8 +181,9 @@ class ChangedRobot::System {
       loads.push_back({.module = module, .load = {}});
     }
     for (std::size_t i = 0; i < forces_.size(); ++i) {
-      base::add_times(loads[known_.size() + unknowns_[i].place].load, forces_[i],
-                      unknowns_[i].along);
+      for (const AtPlace& push : unknowns_[i].pushes) {
+        base::add_times(loads[known_.size() + push.place].load, forces_[i], push.by);
+      }
     }
     return loads;
   }
@@ -158,17 +191,15 @@ class ChangedRobot::System {
   std::size_t yielding_count() const { return yielding_count_; }
 
  private:
-  /// What a force loses by how far a place moves.
-  struct Pull {
+  struct AtPlace {
     std::size_t place = 0;
     Vec6<double> by{};
   };
 
   struct Unknown {
-    std::size_t place = 0;
-    Vec6<double> along{};
+    std::vector<AtPlace> pushes = {};  ///< What a unit of the force is on modules.
     double constant = 0;
-    std::vector<Pull> pulls = {};
+    std::vector<AtPlace> pulls = {};  ///< What the force loses by how far places move.
   };
 
   std::size_t place_of(std::size_t module) {
@@ -181,7 +212,7 @@ class ChangedRobot::System {
 
   static double pull(const Unknown& unknown, const std::vector<Vec6<double>>& moved) {
     double sum = 0;
-    for (const Pull& pull : unknown.pulls) {
+    for (const AtPlace& pull : unknown.pulls) {
       sum += base::dot(pull.by, moved[pull.place]);
     }
     return sum;
@@ -219,8 +250,14 @@ std::optional<Changed> ChangedRobot::solve(const ContactStates& states) const {
       .states = states,
       .new_modules = NewModules(core_, change_.links, change_.beams, change_.new_loads, own)};
   System system(core_, change_, changed.new_modules);
+  for (const model::Connection& beam : change_.lost_beams) {
+    system.add_lost(beam);
+  }
+  for (const std::size_t lost : change_.lost_facets) {
+    system.add_facet(core_.facets()[lost], std::nullopt);
+  }
   for (std::size_t i = 0; i < core_count && !states.empty(); ++i) {
-    if (states[i] != core_.facets()[i].state) {
+    if (states[i] != core_.facets()[i].state && !is_lost(i)) {
       system.add_facet(core_.facets()[i], states[i]);
     }
   }
@@ -266,6 +303,10 @@ std::vector<Vec6<double>> ChangedRobot::trial_forces(const Changed& changed) con
 std::optional<ContactStates> ChangedRobot::prescribed(const Changed& changed) const {
   ContactStates states;
   for (std::size_t i = 0; i < changed.trials.size(); ++i) {
+    if (is_lost(i)) {
+      states.push_back(changed.states[i]);
+      continue;
+    }
     const auto state = certain_state(core_.law(), facet(i), changed.trials[i], scale_n_);
     if (!state) {
       return std::nullopt;
@@ -287,7 +328,7 @@ std::optional<Changed> ChangedRobot::settle() const {
 
 bool ChangedRobot::may_have_others(const Changed& settled) const {
   for (std::size_t i = 0; i < settled.states.size(); ++i) {
-    if (facet(i).is_bonded ||
+    if (facet(i).is_bonded || is_lost(i) ||
         !solver::may_have_second_state(settled.states[i], settled.trials[i], kForceShare)) {
       continue;
     }

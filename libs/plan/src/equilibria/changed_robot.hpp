@@ -51,7 +51,7 @@ std::optional<mechanics::ContactState> certain_state(const solver::FacetLaw<doub
 /// The share by which a force that decides may be off.
 inline constexpr double kForceShare = 1e-6;
 
-/// What a robot has besides its core.
+/// What a robot has besides its core, or lacks.
 struct Change {
   std::vector<PointLoad> loads = {};               ///< On modules of the core.
   std::vector<base::Vec6<double>> new_loads = {};  ///< By new module.
@@ -59,6 +59,8 @@ struct Change {
   std::vector<model::Connection> beams = {};       ///< Between new modules.
   /// Facets of new modules, all of them stuck; `module` is a place among the new ones.
   std::vector<solver::FacetState> facets = {};
+  std::vector<model::Connection> lost_beams = {};  ///< Of the core.
+  std::vector<std::size_t> lost_facets = {};       ///< Of the core; their states are void.
   /// Sees to it that the core knows its answers to loads on these of its modules; false if it
   /// cannot. Empty: it knows them.
   std::function<bool(std::span<const std::size_t>)> find_answers = {};
@@ -75,11 +77,12 @@ struct Changed {
 };
 
 /// A robot that differs little from one that was solved, its *core*: other loads, new modules,
-/// facets in other contact states. All of that are forces on few of the core's modules, each of
-/// which follows from how far these move, and the core answers to them,
+/// facets in other contact states, beams and facets that are lost. All of that are forces on few of
+/// the core's modules, each of which follows from how far these move, and the core answers to them,
 ///   x = c - D u,   u = u_0 + G x,
 /// a small dense system. Along a component of a facet in state s instead of s_0 the force x is
-/// -(corrector(s) - corrector(s_0)) times the trial force; links to new modules as NewModules says.
+/// -(corrector(s) - corrector(s_0)) times the trial force, corrector(s) of a lost facet being 0;
+/// links to new modules as NewModules says. A lost beam's force is put on its ends against itself.
 /// Contact states are sought by Newton's method from all stuck, as a check does, or another
 /// solution may be found than the check's. Keeps references; const members may be called by several
 /// threads if those of the core may.
@@ -110,6 +113,10 @@ class ChangedRobot {
 
  private:
   class System;
+
+  bool is_lost(std::size_t facet) const {
+    return std::ranges::find(change_.lost_facets, facet) != change_.lost_facets.end();
+  }
 
   std::optional<ContactStates> prescribed(const Changed& changed) const;
   base::Vec6<double> displacement(std::size_t module, const std::vector<PointLoad>& loads) const;

@@ -18,6 +18,9 @@ using solver::FacetState;
 /// More feet in other states than the core's make the dense system slower than a check.
 constexpr std::size_t kChangedMax = 24;
 
+/// No more beams or facets than a module of any lattice has may be lost.
+constexpr std::size_t kLostMax = 14;
+
 /// Columns of modules take no more than this.
 constexpr std::size_t kColumnBytesMax = std::size_t{256} << 20U;
 
@@ -58,18 +61,40 @@ class CoreResponse::Member {
     std::size_t index = 0;
   };
 
-  /// Finds each module in the core; false if the robot does not contain it.
+  /// The core's module at `next` may be the one that is lost: its load goes.
+  bool lose_module(std::size_t next) {
+    const auto core = response_.robot_.modules();
+    if (lost_module_ || next == core.size()) {
+      return false;
+    }
+    lost_module_ = next;
+    if (core[next].support != model::Support::kFixed) {
+      change_.loads.push_back(
+          {.module = next, .load = base::sum_of<double>({}, -1, response_.robot_.loads()[next])});
+    }
+    return true;
+  }
+
+  /// Finds each module in the core; false if the robot does not contain it, but for one.
   bool match_modules() {
     const auto modules = robot_.modules();
     const auto core = response_.robot_.modules();
-    if (modules.size() < core.size() || modules.size() > core.size() + kNewMax) {
+    if (modules.size() + 1 < core.size() || modules.size() > core.size() + kNewMax) {
       return false;
     }
     std::size_t next = 0;
+    const bool is_less = modules.size() < core.size();
     for (std::size_t i = 0; i < modules.size(); ++i) {
       const Vec& load = robot_.loads()[i];
       scale_n_ += std::hypot(load[0], load[1], load[2]);
+      if (is_less && modules[i].cell != core[next].cell && !lose_module(next++)) {
+        return false;
+      }
       if (next < core.size() && modules[i].cell == core[next].cell) {
+        if ((modules[i].support == model::Support::kFixed) !=
+            (core[next].support == model::Support::kFixed)) {
+          return false;
+        }
         const Vec& before = response_.robot_.loads()[next];
         if (load != before) {
           change_.loads.push_back({.module = next, .load = base::sum_of<double>(load, -1, before)});
@@ -83,7 +108,7 @@ class CoreResponse::Member {
       places_.push_back({.is_new = true, .index = change_.new_loads.size()});
       change_.new_loads.push_back(load);
     }
-    return next == core.size();
+    return next == core.size() || (is_less && lose_module(next++) && next == core.size());
   }
 
   bool match_facets() {
@@ -91,6 +116,9 @@ class CoreResponse::Member {
     std::size_t next = 0;
     for (const model::Facet& facet : robot_.facets()) {
       const Place& module = places_[at(facet.module)];
+      while (!module.is_new && next < core.size() && !is_same(facet, core[next])) {
+        change_.lost_facets.push_back(next++);
+      }
       facets_.push_back({.is_new = module.is_new, .index = next});
       if (module.is_new) {
         facets_.back().index = core.size() + change_.facets.size();
@@ -98,17 +126,24 @@ class CoreResponse::Member {
                                   .direction = facet.direction,
                                   .is_bonded = facet.is_bonded(),
                                   .state = {}});
-      } else if (next == core.size() || at(core[next].module) != module.index ||
-                 core[next++].direction != facet.direction) {
+      } else if (next++ == core.size()) {
         return false;
       }
     }
-    return next == core.size();
+    for (; next < core.size(); ++next) {
+      change_.lost_facets.push_back(next);
+    }
+    return change_.lost_facets.size() <= kLostMax;
   }
 
-  /// All that the core does not have must end at a new module.
+  /// Whether a facet of a module that the core has is this one of the core.
+  bool is_same(const model::Facet& facet, const model::Facet& core) const {
+    return places_[at(facet.module)].index == at(core.module) && core.direction == facet.direction;
+  }
+
+  /// All that the core does not have must end at a new module, and what the robot lacks is little.
   bool match_connections() {
-    std::size_t shared_count = 0;
+    std::vector<model::Connection> shared;
     for (const model::Connection& pair : robot_.connections()) {
       const Place& a = places_[at(pair.a)];
       const Place& b = places_[at(pair.b)];
@@ -122,9 +157,33 @@ class CoreResponse::Member {
         change_.links.push_back(
             {.host = b.index, .direction = base::opposite(pair.direction), .to = a.index});
       }
-      shared_count += a.is_new || b.is_new ? 0 : 1;
+      if (!a.is_new && !b.is_new) {
+        shared.push_back({.a = static_cast<std::int32_t>(a.index),
+                          .b = static_cast<std::int32_t>(b.index),
+                          .direction = pair.direction});
+      }
     }
-    return shared_count == response_.robot_.connections().size();
+    return match_lost(shared);
+  }
+
+  /// Finds the beams that are lost; false if the core does not have all others. The module that is
+  /// lost hangs without weight on one of its beams: that changes nothing.
+  bool match_lost(const std::vector<model::Connection>& shared) {
+    std::size_t next = 0;
+    bool hangs = !lost_module_ ||
+                 response_.robot_.modules()[*lost_module_].support == model::Support::kFixed;
+    for (const model::Connection& pair : response_.robot_.connections()) {
+      if (next < shared.size() && pair.a == shared[next].a && pair.b == shared[next].b) {
+        ++next;
+        continue;
+      }
+      if (!hangs && (at(pair.a) == lost_module_ || at(pair.b) == lost_module_)) {
+        hangs = true;
+        continue;
+      }
+      change_.lost_beams.push_back(pair);
+    }
+    return next == shared.size() && change_.lost_beams.size() <= kLostMax;
   }
 
   solver::Equilibrium equilibrium(const Changed& settled) const {
@@ -169,6 +228,7 @@ class CoreResponse::Member {
   const model::Robot& robot_;
   std::vector<Place> places_;  ///< By module.
   std::vector<Place> facets_;  ///< By facet: in the states of Changed.
+  std::optional<std::size_t> lost_module_;
   Change change_;
   double scale_n_ = 0;  ///< All loads together.
 };

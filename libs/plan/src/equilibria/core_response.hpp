@@ -13,10 +13,10 @@
 namespace holdfast::plan {
 
 /// The equilibria of many robots that have the same core and little besides: other loads on some of
-/// its modules, or a few modules more. The core is factorized once, all its facets stuck, and
-/// solved once for each of six forces at every module that is ever loaded or touched, or whose
-/// facet yields; then every such robot is a ChangedRobot. The core never changes, so nothing
-/// depends on what was asked before. Not for several threads.
+/// its modules, a few modules more, or one, with a few connections and facets, less. The core is
+/// factorized once, all its facets stuck, and solved once for each of six forces at every module
+/// that is ever loaded or touched, or whose facet yields; then every such robot is a ChangedRobot.
+/// The core never changes, so nothing depends on what was asked before. Not for several threads.
 class CoreResponse {
  public:
   /// Solves the core; none if that is too large for the direct solver, or for double precision.
@@ -24,7 +24,8 @@ class CoreResponse {
                                             const solver::EquilibriumOptions& options);
 
   /// The equilibrium by the regularised law of a robot that has the core's modules, in their order,
-  /// and at most kNewMax others, connected to it or to each other. None if it cannot be had this
+  /// and at most kNewMax others, connected to it or to each other; or that lacks one module, some
+  /// connections or some facets of the core. None if it cannot be had this
   /// way, or if the law may have other solutions: a check has to find out.
   std::optional<solver::Equilibrium> solve(const model::Robot& robot);
 

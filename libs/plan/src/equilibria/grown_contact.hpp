@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -42,11 +43,12 @@ class GrownContact {
   /// The loads while all facets are stuck.
   std::optional<Grown> stuck(const Site& site) const;
 
-  /// What facets that move with the modules' `displacement(module)` and the new one say; certain
-  /// only if all of them are stuck.
+  /// What facets that move with the modules' `displacement(module)` and the new one say, but for
+  /// `lost` ones; certain only if all of them are stuck.
   template <class Displacement>
   Footing footing_if_stuck(const Site& site, const Vec& new_module,
-                           const Displacement& displacement) const;
+                           const Displacement& displacement,
+                           std::span<const std::size_t> lost = {}) const;
 
   /// The loads in the contact states where the path ends; none if it does not end, or not for
   /// certain as that of a check. A site without links: the robot without a new module. `core`
@@ -77,10 +79,14 @@ class GrownContact {
 
 template <class Displacement>
 Footing GrownContact::footing_if_stuck(const Site& site, const Vec& new_module,
-                                       const Displacement& displacement) const {
+                                       const Displacement& displacement,
+                                       std::span<const std::size_t> lost) const {
   Footing footing = {};
   const auto facets = core_.facets();
   for (std::size_t i = 0; !is_bonded_ && i < facets.size(); ++i) {
+    if (std::ranges::find(lost, i) != lost.end()) {
+      continue;
+    }
     look_if_stuck(facets[i], robot_.facets()[i].touch.friction,
                   core_.law().trial_force(facets[i], displacement(facets[i].module)), footing);
   }

@@ -126,44 +126,20 @@ bool CandidateJudge::prepare(const RobotSymmetry& symmetry) {
   return begins_stuck_ || pays();
 }
 
-/// How loads move the centre of mass along x and y: by Maxwell and Betti as masses that pull there
-/// move the modules.
 void CandidateJudge::find_sway() {
-  if (is_held_ || !finder_.has_polygon() || options_.equilibrium.is_bonded) {
-    return;
-  }
-  std::vector<LaneBlock> pulls(influence_->slot_count());
-  const auto& displacement = influence_->displacement();
-  for (std::size_t module = 0; module < displacement.size(); ++module) {
-    const double mass = robot_.mass(module);
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      pulls[influence_->slot(module)].values[axis][axis] += mass;
-    }
-    moved_alone_.add(mass, displacement[module][0], displacement[module][1]);
-  }
-  influence_->solve(pulls);
-  sway_.resize(displacement.size());
-  for (std::size_t module = 0; module < displacement.size(); ++module) {
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      for (std::size_t k = 0; k < 6; ++k) {
-        sway_[module][axis][k] = pulls[influence_->slot(module)].values[k][axis];
-      }
-    }
+  if (!is_held_ && finder_.has_polygon() && !options_.equilibrium.is_bonded) {
+    sway_.emplace(robot_, *influence_);
   }
 }
 
 /// Whether bending surely leaves the centre of mass over the polygon, where the new module moves by
 /// `own`: else a check decides, and says so.
 bool CandidateJudge::stays_over_polygon(const Waiting& waiting, const Vec6<double>& own) const {
-  if (sway_.empty()) {
+  if (!sway_) {
     return true;
   }
-  verdict::MovedMass moved = moved_alone_;
+  verdict::MovedMass moved = sway_->moved(waiting.grown.loads);
   moved.add(robot_.material().mass_kg, own[0], own[1]);
-  for (const PointLoad& point : waiting.grown.loads) {
-    moved.x_kg_mm += base::dot(sway_[point.module][0], point.load);
-    moved.y_kg_mm += base::dot(sway_[point.module][1], point.load);
-  }
   return waiting.margin_mm && moved.shift_mm() * (1 + kSwayRounding) < *waiting.margin_mm;
 }
 

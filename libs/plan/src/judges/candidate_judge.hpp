@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -11,9 +10,9 @@
 
 #include "equilibria/grown_contact.hpp"
 #include "equilibria/site.hpp"
+#include "equilibria/sway.hpp"
 #include "holdfast/plan/candidates.hpp"
 #include "holdfast/solver/influence.hpp"
-#include "holdfast/verdict/moved_mass.hpp"
 #include "holdfast/verdict/rigid_body.hpp"
 #include "judges/robot_symmetry.hpp"
 
@@ -77,10 +76,7 @@ class CandidateJudge {
   std::optional<GrownContact> contact_;
   mutable std::once_flag columns_made_;
   mutable std::unique_ptr<SolvedCore> core_with_columns_;  ///< None if they take too much.
-
-  // Without the new module, where the polygon decides; else empty.
-  verdict::MovedMass moved_alone_;
-  std::vector<std::array<base::Vec6<double>, 2>> sway_;  ///< By module; kg mm per unit load.
+  std::optional<Sway> sway_;  ///< Without the new module, where the polygon decides.
 };
 
 }  // namespace holdfast::plan

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "judges/core_assessment.hpp"
 #include "severity.hpp"
 
 namespace holdfast::plan {
@@ -17,9 +18,6 @@ using verdict::Verdict;
 
 /// Larger robots are left to multigrid.
 constexpr std::size_t kCoreCountMax = 2000;
-
-/// A load ratio that is this near to 1 is left to a check, which has more digits.
-constexpr double kNearLimit = 1e-6;
 
 /// Whether `b` is worse than `a`: by verdict, then by margin if they topple, else by load.
 bool is_worse(const Judgement& a, const Judgement& b) {
@@ -99,19 +97,6 @@ bool is_unchanged(const RobotState& before, const model::Step& step, const Trans
   return transition.groups.empty() && step.attach.empty() && step.connect.empty();
 }
 
-/// Whether a check of the robot would end here as well, with this equilibrium of the regularised
-/// law which has no others (find_equilibrium() in verdict/src/assessment.cpp).
-bool is_final(const model::Robot& robot, const verdict::Assessment& assessment) {
-  const bool is_model_needed = assessment.stability_rule != verdict::StabilityRule::kContactForces;
-  const bool agrees = assessment.model.is_settled && assessment.is_stable &&
-                      (assessment.model.is_stable || !is_model_needed);
-  const bool is_decided =
-      assessment.verdict == Verdict::kSafe || assessment.verdict == Verdict::kOverload;
-  const double distance = std::abs(assessment.load_ratio_max.value_or(0) - 1);
-  return agrees && !verdict::has_pulling_facets(robot, assessment) && is_decided &&
-         distance > kNearLimit;
-}
-
 /// Whether two robots with the same surroundings are the same.
 bool is_same(const model::RobotSpec& a, const model::RobotSpec& b) {
   return a.existing == b.existing && a.fixed == b.fixed && a.released == b.released &&
@@ -155,13 +140,7 @@ std::optional<verdict::Assessment> StageJudge::assess_by_core(const model::Robot
   if (!is_core_in_use_ || !core_) {
     return std::nullopt;
   }
-  auto equilibrium = core_->solve(robot);
-  if (!equilibrium) {
-    return std::nullopt;
-  }
-  verdict::Assessment assessment =
-      verdict::assess_equilibrium(robot, *std::move(equilibrium), options_.thread_count);
-  return is_final(robot, assessment) ? std::optional(std::move(assessment)) : std::nullopt;
+  return plan::assess_by_core(*core_, robot, options_.thread_count);
 }
 
 base::Result<StageJudgement> StageJudge::judge_piece(const model::RobotSpec& spec) {

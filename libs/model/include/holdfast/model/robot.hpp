@@ -108,6 +108,14 @@ struct CarriedMass {
   friend bool operator==(const CarriedMass&, const CarriedMass&) = default;
 };
 
+/// A side of a module that would touch the environment, but does not: a foot that is lost.
+struct LostFacet {
+  base::Cell cell;
+  base::Direction direction = base::Direction::kMinusZ;
+
+  friend bool operator==(const LostFacet&, const LostFacet&) = default;
+};
+
 /// The specification that a robot is made from, in any order.
 struct RobotSpec {
   std::vector<base::Cell> existing = {};
@@ -136,6 +144,7 @@ struct RobotSpec {
   std::vector<OwnConnector> own_connectors = {};  ///< No pair twice, and none that is released.
   std::vector<Payload> payloads = {};
   std::vector<CarriedMass> carried = {};
+  std::vector<LostFacet> lost_facets = {};  ///< Robot::facets() has all but these.
 };
 
 /// Takes away what a spec says of modules that it does not have.

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "commands.hpp"
+#include "holdfast/reliability.hpp"
+
+/// The options of `check` that ask how sure its answer is where strengths scatter.
+namespace holdfast::cli {
+
+struct ScatterOptions {
+  std::string cv;      ///< Empty if nothing is asked for.
+  std::string common;  ///< Empty: none.
+  std::string distribution = "lognormal";
+  double probability = 0;  ///< 0: none is asked for.
+
+  bool is_wanted() const { return !cv.empty(); }
+};
+
+void add_scatter_options(CLI::App& command, ScatterOptions& options);
+
+/// The scatter that is asked for.
+verdict::StrengthScatter read_scatter(const ScatterOptions& options);
+
+/// The exit code of a robot that is safe by itself, by the probability that is asked for: it is
+/// unsafe if that is not reached, and undecided if that is not certain or no probability is known.
+int exit_code_of(const ScatterOptions& options,
+                 const std::optional<verdict::Reliability>& reliability);
+
+}  // namespace holdfast::cli

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "holdfast/holdfast.hpp"     // IWYU pragma: export
+#include "holdfast/plan/losses.hpp"  // IWYU pragma: export
+
+/// The facade's answer to "and if one connection fails?": what follows from the loss of each single
+/// connection, module and foot of a structure.
+///
+///     const plan::LossReport losses = holdfast::lose_one(structure);
+///     if (!losses.holds_all()) { ... losses.fatal ... losses.undecided ... }
+namespace holdfast {
+
+struct LoseOneOptions {
+  CheckOptions check = {};
+  /// The parts that are lost, by plan::LossKind: connections, modules, feet.
+  std::array<bool, plan::kLossKindCount> kinds = {true, true, true};
+  /// Losses that are not judged after this time are undecided.
+  double seconds_max = std::numeric_limits<double>::infinity();
+  /// Called now and then with how many losses are judged, of how many.
+  std::function<void(std::size_t done, std::size_t count)> progress = {};
+};
+
+/// Judges the loss of each single part of a structure with its planned modules attached, as a check
+/// of what is left would.
+plan::LossReport lose_one(const Structure& structure, const LoseOneOptions& options = {});
+
+/// Lines for the end of report_text().
+std::string lose_one_text(const plan::LossReport& report);
+
+/// Writes the key "lose_one" into the report's object, which is open; docs/formats.md.
+void write_lose_one_member(io::JsonStream& json, const model::Robot& robot,
+                           const plan::LossReport& report);
+
+}  // namespace holdfast

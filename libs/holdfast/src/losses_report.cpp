@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "holdfast/base/check.hpp"
+#include "holdfast/losses.hpp"
+
+namespace holdfast {
+namespace {
+
+using plan::Loss;
+using plan::LossAnswer;
+using plan::LossKind;
+using plan::LossReport;
+using verdict::Verdict;
+
+/// People get no more lines of losses than this; a JSON report has all.
+constexpr std::size_t kShownMax = 10;
+
+std::string words(const Loss& loss) {
+  const std::string cell = model::text(loss.cells[0]);
+  switch (loss.kind) {
+    case LossKind::kConnection:
+      return cell + "-" + model::text(loss.cells[1]);
+    case LossKind::kModule:
+      return cell;
+    case LossKind::kFoot:
+      break;
+  }
+  return (loss.direction ? "a foot of " : "what fixes ") + cell;
+}
+
+std::string consequence(const LossAnswer& answer) {
+  if (answer.fallen_count > 0) {
+    return host::counted(answer.fallen_count, "module") +
+           (answer.fallen_count == 1 ? " falls" : " fall");
+  }
+  std::string text = verdict::name(answer.verdict);
+  if (answer.load_ratio_max && answer.verdict != Verdict::kUnstable) {
+    text += fmt::format(", load ratio {}", io::beside_one(*answer.load_ratio_max, 4));
+  }
+  return text;
+}
+
+void write_loss(io::JsonStream& json, const model::Robot& robot, const Loss& loss) {
+  switch (loss.kind) {
+    case LossKind::kConnection:
+      json.member("a", loss.cells[0]);
+      json.member("b", loss.cells[1]);
+      return;
+    case LossKind::kModule:
+      json.member("module", loss.cells[0]);
+      return;
+    case LossKind::kFoot:
+      break;
+  }
+  json.member("foot", loss.cells[0]);
+  json.key("direction");
+  if (!loss.direction) {
+    json.value(nullptr);
+    return;
+  }
+  json.begin_array();
+  for (const double component : base::unit_vector(robot.lattice(), *loss.direction)) {
+    json.value(component);
+  }
+  json.end_array();
+}
+
+void write_answer(io::JsonStream& json, const model::Robot& robot, const LossAnswer& answer) {
+  json.begin_object();
+  write_loss(json, robot, answer.loss);
+  json.member("verdict", verdict::name(answer.verdict));
+  json.member("load_ratio_max", answer.load_ratio_max);
+  json.member("fallen", answer.fallen_count);
+  json.end_object();
+}
+
+void write_answers(io::JsonStream& json, const char* key, const model::Robot& robot,
+                   const std::vector<LossAnswer>& answers) {
+  json.key(key);
+  json.begin_array();
+  for (const LossAnswer& answer : answers) {
+    write_answer(json, robot, answer);
+  }
+  json.end_array();
+}
+
+/// What is said first.
+std::string headline(const LossReport& report) {
+  if (!report.whole.is_safe()) {
+    return "not tried: the structure is not safe as it is";
+  }
+  if (!report.fatal.empty()) {
+    return fmt::format("{} of {} single losses bring it down", report.fatal.size(),
+                       report.loss_count);
+  }
+  if (!report.undecided.empty()) {
+    return fmt::format("none of {} single losses is known to bring it down", report.loss_count);
+  }
+  return fmt::format("safe whatever is lost: each of {} connections, modules and feet",
+                     report.loss_count);
+}
+
+}  // namespace
+
+LossReport lose_one(const Structure& structure, const LoseOneOptions& options) {
+  const auto spec = io::make_spec(structure.document);
+  HOLDFAST_CHECK(spec.has_value());  // The structure's robot was made of it.
+  plan::LossOptions how;
+  how.kinds = options.kinds;
+  how.seconds_max = options.seconds_max;
+  how.progress = options.progress;
+  how.equilibrium.memory_bytes_max = options.check.memory_bytes_max;
+  how.equilibrium.is_bonded = options.check.is_bonded;
+  how.equilibrium.thread_count = options.check.thread_count;
+  return plan::lose_each(spec.value(), how);
+}
+
+std::string lose_one_text(const LossReport& report) {
+  std::string text;
+  const auto add = [&](const std::string& line) {
+    text += fmt::format("  {:<12}{}\n", text.empty() ? "lose one" : "", line);
+  };
+  add(headline(report));
+  for (std::size_t i = 0; i < std::min(report.fatal.size(), kShownMax); ++i) {
+    add(fmt::format("without {}: {}", words(report.fatal[i].loss), consequence(report.fatal[i])));
+  }
+  if (report.fatal.size() > kShownMax) {
+    add(fmt::format("(and {} more)", report.fatal.size() - kShownMax));
+  }
+  if (!report.undecided.empty()) {
+    add(fmt::format("{} of the losses {} undecided, the first that of {}", report.undecided.size(),
+                    report.undecided.size() == 1 ? "is" : "are",
+                    words(report.undecided.front().loss)));
+  }
+  if (report.worst) {
+    add(fmt::format("where all is held, the load ratio is {} {}, without {}",
+                    report.worst->is_bound ? "below" : "at most",
+                    io::beside_one(*report.worst->load_ratio_max, 4), words(report.worst->loss)));
+  }
+  return text;
+}
+
+void write_lose_one_member(io::JsonStream& json, const model::Robot& robot,
+                           const LossReport& report) {
+  json.key("lose_one");
+  json.begin_object();
+  json.member("holds_all", report.holds_all());
+  json.member("losses", report.loss_count);
+  write_answers(json, "fatal", robot, report.fatal);
+  write_answers(json, "undecided", robot, report.undecided);
+  json.key("worst");
+  if (report.worst) {
+    json.begin_object();
+    write_loss(json, robot, report.worst->loss);
+    json.member("load_ratio_max", report.worst->load_ratio_max);
+    json.member("is_bound", report.worst->is_bound);
+    json.end_object();
+  } else {
+    json.value(nullptr);
+  }
+  json.member("bounds", report.bound_count);
+  json.member("checks", report.check_count);
+  json.member("seconds", report.seconds);
+  json.end_object();
+}
+
+}  // namespace holdfast

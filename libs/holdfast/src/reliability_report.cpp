@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "holdfast/reliability.hpp"
+
+namespace holdfast {
+namespace {
+
+using verdict::Reliability;
+
+/// Smaller probabilities are said of failing, larger ones of holding.
+constexpr double kRarely = 1e-3;
+
+/// Bounds of the probability that are apart by less are not said.
+constexpr double kSameProbability = 5e-4;
+
+constexpr const char* kUnknown =
+    "not known, as the robot is not known to stay where it is or has no loads";
+
+std::string scatter_text(const verdict::StrengthScatter& scatter) {
+  std::string text = fmt::format("strengths +-{:.4g} %", 100 * scatter.cv);
+  if (scatter.common_cv > 0) {
+    text += fmt::format(" each, +-{:.4g} % together", 100 * scatter.common_cv);
+  }
+  if (scatter.distribution != verdict::StrengthDistribution::kLognormal) {
+    text += fmt::format(", {}", name(scatter.distribution));
+  }
+  return text;
+}
+
+std::string probability_text(const Reliability& found) {
+  if (found.likeliest.empty()) {
+    return fmt::format("holds whatever the strengths ({}): no connection is pulled",
+                       scatter_text(found.scatter));
+  }
+  std::string text = found.fails < kRarely
+                         ? fmt::format("fails with probability {:.2g}", found.fails)
+                         : fmt::format("holds with probability {:.3g}", found.holds);
+  text += fmt::format(" ({})", scatter_text(found.scatter));
+  if (found.holds_high - found.holds_low > kSameProbability) {
+    text += fmt::format(", from {:.3g} to {:.3g} within what the loads may be off", found.holds_low,
+                        found.holds_high);
+  }
+  return text;
+}
+
+std::string factor_text(const std::optional<double>& factor) {
+  return factor ? fmt::format("{:.3g} times", *factor) : std::string("no factor of");
+}
+
+}  // namespace
+
+std::optional<Reliability> find_reliability(const CheckResult& result,
+                                            const verdict::StrengthScatter& scatter) {
+  return verdict::find_reliability(result.assessment, scatter);
+}
+
+std::string reliability_text(const model::Robot& robot,
+                             const std::optional<Reliability>& reliability) {
+  const auto line = [](const char* head, const std::string& text) {
+    return fmt::format("  {:<12}{}\n", head, text);
+  };
+  if (!reliability) {
+    return line("reliability", kUnknown);
+  }
+  const Reliability& found = *reliability;
+  if (found.likeliest.empty()) {
+    return line("reliability", probability_text(found));
+  }
+  const verdict::FailingConnection& first = found.likeliest.front();
+  return line("reliability",
+              fmt::format("{}; {} is the likeliest to fail, in {:.0f} % of the cases",
+                          probability_text(found), model::ends_text(robot, first.connection),
+                          100 * first.share)) +
+         line("", fmt::format("for 99 % {} the strengths, for 99.9 % {}",
+                              factor_text(found.strength_factor_99),
+                              factor_text(found.strength_factor_999)));
+}
+
+void write_reliability_member(io::JsonStream& json, const model::Robot& robot,
+                              const verdict::StrengthScatter& scatter,
+                              const std::optional<Reliability>& reliability) {
+  const auto of = [&](double Reliability::*member) {
+    return reliability ? std::optional((*reliability).*member) : std::nullopt;
+  };
+  json.key("reliability");
+  json.begin_object();
+  json.member("probability_holds", of(&Reliability::holds));
+  json.member("probability_fails", of(&Reliability::fails));
+  json.member("probability_low", of(&Reliability::holds_low));
+  json.member("probability_high", of(&Reliability::holds_high));
+  json.member("strength_cv", scatter.cv);
+  json.member("common_cv", scatter.common_cv);
+  json.member("distribution", name(scatter.distribution));
+  json.key("likeliest");
+  json.begin_array();
+  for (std::size_t i = 0; reliability && i < reliability->likeliest.size(); ++i) {
+    const verdict::FailingConnection& one = reliability->likeliest[i];
+    const auto ends = model::ends(robot, one.connection);
+    json.begin_object();
+    json.member("a", ends[0]);
+    json.member("b", ends[1]);
+    json.member("load_ratio", one.load_ratio);
+    json.member("share", one.share);
+    json.end_object();
+  }
+  json.end_array();
+  json.member("strength_factor_99", reliability ? reliability->strength_factor_99 : std::nullopt);
+  json.member("strength_factor_999", reliability ? reliability->strength_factor_999 : std::nullopt);
+  json.end_object();
+}
+
+}  // namespace holdfast

@@ -1,0 +1,211 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "bounds/loop_bound.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "equilibria/carried_force.hpp"
+#include "equilibria/stuck_core.hpp"
+#include "holdfast/model/material.hpp"
+
+namespace holdfast::plan {
+namespace {
+
+using base::at;
+using base::Direction;
+using base::Vec6;
+using model::Robot;
+
+/// Bounds nearer to 1 are not trusted, as of EnergyBound.
+constexpr double kLoopRatioMax = 1 - 1e-3;
+
+/// How exactly the centre of mass's answer is found.
+constexpr double kSwayTolerance = 1e-3;
+
+/// The norm of an answer to loads: by Cauchy and Schwarz the work is off by the norm times the
+/// error at most.
+double norm_of(double work, double error) {
+  return (error + std::sqrt(error * error + 4 * std::max(0.0, work))) / 2;
+}
+
+}  // namespace
+
+bool is_stuck_and_safe(const verdict::Assessment& solved, bool is_bonded) {
+  return solved.verdict == verdict::Verdict::kSafe && !solved.several &&
+         solved.contact_model != verdict::ContactModel::kUnilateral &&
+         solved.stability_rule != verdict::StabilityRule::kContactForces &&
+         (is_bonded || std::ranges::all_of(solved.equilibrium.contact, [](const auto& state) {
+            return state == mechanics::kStuck;
+          }));
+}
+
+std::unique_ptr<LoopBound> LoopBound::make(const model::RobotSpec& spec, const Robot& robot,
+                                           const verdict::Assessment& solved, bool is_bonded) {
+  if (!is_stuck_and_safe(solved, is_bonded)) {
+    return nullptr;
+  }
+  std::unique_ptr<LoopBound> bound(new LoopBound(robot, solved));
+  bound->look_at_facets(is_bonded);
+  bound->has_polygon_ = !is_bonded && solved.stability_rule == verdict::StabilityRule::kPolygon;
+  if (bound->room_ <= 0 || (bound->has_polygon_ && (!solved.lean || !bound->find_sway(spec)))) {
+    return nullptr;
+  }
+  return bound;
+}
+
+LoopBound::LoopBound(const Robot& robot, const verdict::Assessment& solved)
+    : robot_(robot),
+      solved_(solved),
+      beam_(model::beam_section(robot.material()), robot.lattice()),
+      stiffness_(middle_stiffness(beam_)),
+      ratio_per_norm_(model::load_ratio_per_energy_norm(robot)),
+      error_(verdict::kEnergyFactor * solved.equilibrium.energy_error) {
+  for (const Direction direction : base::directions(robot.lattice())) {
+    const auto forces =
+        base::matrix_of<double>([&](const Vec& u) { return beam_.middle_force(direction, u, {}); });
+    std::array<Vec, 6>& pulls = pulls_.emplace_back();
+    for (int k = 0; k < 6; ++k) {
+      for (int i = 0; i < 6; ++i) {
+        pulls[at(k)][at(i)] = forces.at(k, i) / stiffness_[at(k)];
+      }
+    }
+  }
+  for (std::size_t i = 0; i < robot.modules().size(); ++i) {
+    mass_kg_ += robot.mass(i);
+  }
+}
+
+/// How far a pull sideways at every module's mass moves the centre of mass.
+bool LoopBound::find_sway(model::RobotSpec spec) {
+  spec.existing.insert(spec.existing.end(), spec.planned.begin(), spec.planned.end());
+  spec.planned.clear();
+  ElementSet all(spec.existing.size());
+  for (std::size_t i = 0; i < spec.existing.size(); ++i) {
+    all.insert(static_cast<Element>(i));
+  }
+  const auto core = StuckCore::make(spec, all, solver::Precision::kDouble);
+  if (!core) {
+    return false;
+  }
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    StuckCore::Vecs pulls(spec.existing.size());
+    for (std::size_t i = 0; i < pulls.size(); ++i) {
+      pulls[i][axis] = robot_.mass(i);
+    }
+    const auto answer = core->answer(pulls, kSwayTolerance);
+    if (!answer) {
+      return false;
+    }
+    sway_[axis] = norm_of(work_of(pulls, answer->displacement), answer->error);
+  }
+  return true;
+}
+
+void LoopBound::look_at_facets(bool is_bonded) {
+  room_ = std::numeric_limits<double>::infinity();
+  const double b = robot_.foot_half_width_mm();
+  const double pitch = robot_.material().pitch_mm;
+  for (std::size_t i = 0; i < robot_.facets().size() && !is_bonded; ++i) {
+    const model::Facet& facet = robot_.facets()[i];
+    if (facet.is_bonded()) {
+      continue;
+    }
+    // What the facet does to its module, at the node; in the middle of the facet its opposite.
+    Vec at_node{};
+    base::add_times(at_node, -1, solved_.equilibrium.facet_force[i]);
+    const Vec force = force_in_middle(beam_, facet.direction, at_node, pitch);
+    const double pressure = std::abs(force[2]);
+    for (const std::size_t axis : {3U, 4U}) {
+      const double per_norm = std::sqrt(stiffness_[axis] + stiffness_[2] * b * b);
+      const double room = (pressure * b - std::abs(force[axis])) / per_norm - error_;
+      room_ = facet.touch.friction ? 0 : std::min(room_, room);
+    }
+  }
+}
+
+/// Triangles, or where there are none squares: with no beam in common.
+std::vector<LoopBound::Loop> LoopBound::loops_beside(const model::Connection& lost) const {
+  const auto& connected = robot_.connected();
+  const auto beside = [&](std::int32_t module, Direction direction) {
+    return connected[at(module)][at(base::index(direction))];
+  };
+  std::vector<Loop> triangles;
+  std::vector<Loop> squares;
+  for (const Direction aside : base::directions(robot_.lattice())) {
+    const std::int32_t near_a = beside(lost.a, aside);
+    if (near_a == Robot::kNoNeighbour || near_a == lost.b) {
+      continue;
+    }
+    for (const Direction last : base::directions(robot_.lattice())) {
+      if (beside(near_a, last) == lost.b) {
+        triangles.push_back({.steps = {aside, last}, .count = 2});
+      }
+    }
+    const std::int32_t near_b = beside(lost.b, aside);
+    if (near_b != Robot::kNoNeighbour && near_b != lost.a &&
+        beside(near_a, lost.direction) == near_b) {
+      squares.push_back({.steps = {aside, lost.direction, base::opposite(aside)}, .count = 3});
+    }
+  }
+  return triangles.empty() ? squares : triangles;
+}
+
+/// The sum of t^2 / h if one loop takes all that acts at the node of the first end.
+double LoopBound::energy_along(std::size_t from, const Loop& loop, const Vec& at_first) const {
+  const double pitch = robot_.material().pitch_mm;
+  const Vec start = node_place(robot_, from);
+  std::size_t module = from;
+  double energy = 0;
+  for (std::size_t i = 0; i < loop.count; ++i) {
+    const Vec to = base::sum_of<double>(node_place(robot_, module), -1, start);
+    const Vec force = force_in_middle(beam_, loop.steps[i], force_at(at_first, to), pitch);
+    for (std::size_t k = 0; k < 6; ++k) {
+      energy += force[k] * force[k] / stiffness_[k];
+    }
+    module = at(robot_.connected()[module][at(base::index(loop.steps[i]))]);
+  }
+  return energy;
+}
+
+double LoopBound::energy(const model::Connection& lost, const std::vector<Loop>& loops,
+                         const Vec& at_first) const {
+  double sum = 0;
+  for (const Loop& loop : loops) {
+    const double alone = energy_along(at(lost.a), loop, at_first);
+    if (alone <= 0) {
+      return 0;
+    }
+    sum += 1 / alone;
+  }
+  return 1 / sum;
+}
+
+std::optional<double> LoopBound::without(const model::Connection& lost) const {
+  const std::vector<Loop> loops = loops_beside(lost);
+  if (loops.empty()) {
+    return std::nullopt;
+  }
+  const std::array<Vec, 6>& pulls = pulls_[at(base::index(lost.direction))];
+  const auto& u = solved_.equilibrium.displacement;
+  const Vec carried = beam_.middle_force(lost.direction, u[at(lost.a)], u[at(lost.b)]);
+  Vec all{};
+  double units = 0;
+  for (std::size_t k = 0; k < 6; ++k) {
+    base::add_times(all, carried[k], pulls[k]);
+    units += stiffness_[k] * energy(lost, loops, pulls[k]);
+  }
+  const double norm = std::sqrt(energy(lost, loops, all)) + error_ * std::sqrt(units);
+  const double high = solved_.load_ratio_max ? std::max(0.0, solved_.load_ratio_range.high) : 0.0;
+  const double ratio = high + ratio_per_norm_ * norm;
+  if (!(ratio < kLoopRatioMax) || !(norm < room_)) {
+    return std::nullopt;
+  }
+  const double shift = std::hypot(sway_[0], sway_[1]) * norm * std::sqrt(1 + units) / mass_kg_;
+  const bool stays = !has_polygon_ || shift < solved_.lean->margin_mm;
+  return stays ? std::optional(ratio) : std::nullopt;
+}
+
+}  // namespace holdfast::plan

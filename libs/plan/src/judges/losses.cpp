@@ -1,0 +1,390 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "holdfast/plan/losses.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <functional>
+#include <limits>
+#include <map>
+#include <memory>
+#include <span>
+#include <utility>
+
+#include "bounds/loop_bound.hpp"
+#include "holdfast/base/check.hpp"
+#include "holdfast/host/team.hpp"
+#include "holdfast/model/cell_index.hpp"
+#include "judges/core_assessment.hpp"
+#include "judges/loss_judge.hpp"
+#include "judges/lost_part.hpp"
+#include "part_of.hpp"
+#include "patience.hpp"
+#include "severity.hpp"
+
+namespace holdfast::plan {
+namespace {
+
+using base::at;
+using base::Cell;
+using verdict::Verdict;
+
+/// A core serves robots of no more modules: larger ones take long to be assessed anyway.
+constexpr std::size_t kLossCoreCountMax = 2000;
+
+/// The number of losses that are judged between two looks at the clock.
+constexpr std::size_t kLossStride = 256;
+
+/// The worst loss is sought among so many that are known by a bound alone.
+constexpr std::size_t kRefinedMax = 256;
+
+/// The spec without what is lost. All modules are there: a piece may have none but planned ones.
+model::RobotSpec spec_after(model::RobotSpec spec, const Loss& loss) {
+  const Cell& cell = loss.cells[0];
+  spec.existing.insert(spec.existing.end(), spec.planned.begin(), spec.planned.end());
+  spec.planned.clear();
+  switch (loss.kind) {
+    case LossKind::kConnection:
+      spec.released.push_back({loss.cells[0], loss.cells[1]});
+      break;
+    case LossKind::kModule:
+      std::erase(spec.existing, cell);
+      break;
+    case LossKind::kFoot:
+      if (loss.direction) {
+        spec.lost_facets.push_back({.cell = cell, .direction = *loss.direction});
+      } else {
+        std::erase(spec.fixed, cell);
+      }
+      break;
+  }
+  return spec;
+}
+
+/// What a spec says of these cells alone.
+model::RobotSpec part_with(const model::RobotSpec& spec, const std::map<Cell, std::size_t>& piece,
+                           std::size_t index) {
+  const auto is_other = [&](const Cell& cell) { return piece.at(cell) != index; };
+  model::RobotSpec part = spec;
+  std::erase_if(part.existing, is_other);
+  return part;
+}
+
+void forget_carried(model::RobotSpec& spec) {
+  std::vector<Cell> there = spec.existing;
+  std::ranges::sort(there);
+  std::erase_if(spec.carried, [&](const model::CarriedMass& mass) {
+    return !std::ranges::binary_search(there, mass.carrier);
+  });
+}
+
+/// The piece of each cell, by neighbours that are not released.
+std::map<Cell, std::size_t> pieces_of(const model::RobotSpec& spec, std::size_t& count) {
+  std::map<Cell, std::size_t> piece;
+  constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  for (const Cell& cell : spec.existing) {
+    piece[cell] = kNone;
+  }
+  std::vector<model::CellPair> released;
+  for (const model::CellPair& pair : spec.released) {
+    released.push_back(pair);
+    released.push_back({pair[1], pair[0]});
+  }
+  std::ranges::sort(released);
+  count = 0;
+  for (const auto& [first, known] : piece) {
+    if (known != kNone) {
+      continue;
+    }
+    std::vector<Cell> queue = {first};
+    piece[first] = count;
+    for (std::size_t i = 0; i < queue.size(); ++i) {
+      const Cell here = queue[i];
+      for (const base::Direction direction : base::directions(spec.lattice)) {
+        const Cell next = base::neighbour(spec.lattice, here, direction);
+        const auto found = piece.find(next);
+        if (found != piece.end() && found->second == kNone &&
+            !std::ranges::binary_search(released, model::CellPair{here, next})) {
+          found->second = count;
+          queue.push_back(next);
+        }
+      }
+    }
+    ++count;
+  }
+  return piece;
+}
+
+/// Judges all losses of one robot.
+class LossSearch {
+ public:
+  LossSearch(const model::RobotSpec& spec, const model::Robot& robot, const LossOptions& options)
+      : spec_(spec),
+        robot_(robot),
+        options_(options),
+        patience_(options.seconds_max, not_interrupted_) {
+    options_.equilibrium.has_rigid_figures = false;
+  }
+
+  LossReport find() {
+    const verdict::Assessment solved = assess(robot_, options_.equilibrium);
+    LossReport report{.whole = judgement_of(solved)};
+    parts_ = PartFinder(robot_).find(options_.kinds);
+    report.loss_count = parts_.size();
+    if (!report.whole.is_safe()) {
+      return report;
+    }
+    answers_.resize(parts_.size());
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      look_at(i);
+    }
+    if (!options_.is_by_checks && robot_.modules().size() >= options_.loop_count_min) {
+      bound_by_loops(solved);
+    }
+    if (!options_.is_by_checks && left_count() > 0 && !patience_.is_over()) {
+      judge_ = LossJudge::make(spec_, robot_, solved, parts_, options_.equilibrium);
+    }
+    if (judge_) {
+      bound_each([&](const LostPart& part) { return judge_->bound(part); });
+    }
+    report.bound_count = count_bounds();
+    if (judge_) {
+      judge_all(left(), false);
+    }
+    check_rest(report);
+    refine();
+    conclude(report);
+    return report;
+  }
+
+ private:
+  LossAnswer answer_of(std::size_t index) const { return {.loss = parts_[index].loss}; }
+
+  /// What needs no mechanics: modules that nothing holds fall.
+  void look_at(std::size_t index) {
+    if (parts_[index].fallen_count > 0) {
+      answers_[index] = answer_of(index);
+      answers_[index]->verdict = Verdict::kUnstable;
+      answers_[index]->fallen_count = parts_[index].fallen_count;
+    }
+  }
+
+  std::vector<std::size_t> left() const {
+    std::vector<std::size_t> some;
+    for (std::size_t i = 0; i < answers_.size(); ++i) {
+      if (!answers_[i]) {
+        some.push_back(i);
+      }
+    }
+    return some;
+  }
+
+  std::size_t left_count() const { return left().size(); }
+
+  std::size_t count_bounds() const {
+    return static_cast<std::size_t>(std::ranges::count_if(
+        answers_, [](const auto& answer) { return answer && answer->is_bound; }));
+  }
+
+  void bound_by_loops(const verdict::Assessment& solved) {
+    const auto loops = LoopBound::make(spec_, robot_, solved, options_.equilibrium.is_bonded);
+    if (loops) {
+      bound_each([&](const LostPart& part) {
+        return part.loss.kind == LossKind::kConnection && !part.is_apart
+                   ? loops->without(part.change.lost_beams.front())
+                   : std::nullopt;
+      });
+    }
+  }
+
+  /// Those that are safe by a bound(part).
+  template <class Bound>
+  void bound_each(const Bound& bound_of) {
+    host::Team team(options_.equilibrium.thread_count, parts_.size());
+    team.share(0, parts_.size(), [&](std::size_t begin, std::size_t end) {
+      for (; begin < end; ++begin) {
+        const auto bound = answers_[begin] ? std::nullopt : bound_of(parts_[begin]);
+        if (bound) {
+          answers_[begin] = answer_of(begin);
+          answers_[begin]->verdict = Verdict::kSafe;
+          answers_[begin]->load_ratio_max = bound;
+          answers_[begin]->is_bound = true;
+        }
+      }
+    });
+  }
+
+  void tell() {
+    if (options_.progress) {
+      options_.progress(answers_.size() - left_count(), answers_.size());
+    }
+  }
+
+  /// Judges these exactly, as far as that goes without checks.
+  void judge_all(const std::vector<std::size_t>& some, bool is_again) {
+    std::vector<const LostPart*> asked;
+    for (const std::size_t i : some) {
+      asked.push_back(&parts_[i]);
+    }
+    std::vector<std::optional<Judgement>> judged(asked.size());
+    for (std::size_t first = 0; first < asked.size() && !patience_.is_over();
+         first += kLossStride) {
+      const std::size_t count = std::min(kLossStride, asked.size() - first);
+      judge_->judge(std::span(asked).subspan(first, count),
+                    std::span(judged).subspan(first, count));
+      for (std::size_t i = first; i < first + count; ++i) {
+        if (judged[i]) {
+          LossAnswer& answer = answers_[some[i]].emplace(answer_of(some[i]));
+          answer.verdict = judged[i]->verdict;
+          answer.load_ratio_max = judged[i]->load_ratio_max;
+        }
+      }
+      if (!is_again) {
+        tell();
+      }
+    }
+  }
+
+  void check_rest(LossReport& report) {
+    for (const std::size_t i : left()) {
+      if (patience_.is_over()) {
+        answers_[i] = answer_of(i);
+        continue;
+      }
+      answers_[i] = check(parts_[i]);
+      ++report.check_count;
+      tell();
+    }
+  }
+
+  /// Judges what is left, each piece by itself, by a check of it.
+  LossAnswer check(const LostPart& part) {
+    LossAnswer answer{.loss = part.loss, .verdict = Verdict::kSafe};
+    const model::RobotSpec changed = spec_after(spec_, part.loss);
+    std::size_t count = 0;
+    const auto piece = pieces_of(changed, count);
+    for (std::size_t i = 0; i < count; ++i) {
+      model::RobotSpec spec = part_with(changed, piece, i);
+      forget_absent(spec);
+      forget_carried(spec);
+      const auto robot = model::Robot::create(spec, options_.equilibrium.thread_count);
+      const Judgement judgement = robot ? judge_piece(robot.value(), count == 1) : Judgement{};
+      if (severity(judgement.verdict) > severity(answer.verdict)) {
+        answer.verdict = judgement.verdict;
+      }
+      if (judgement.load_ratio_max) {
+        answer.load_ratio_max = std::max(answer.load_ratio_max.value_or(*judgement.load_ratio_max),
+                                         *judgement.load_ratio_max);
+      }
+    }
+    return answer;
+  }
+
+  Judgement judge_piece(const model::Robot& robot, bool is_whole) {
+    if (is_whole && !options_.is_by_checks) {
+      if (CoreResponse* const core = core_of_robot()) {
+        if (const auto assessment =
+                assess_by_core(*core, robot, options_.equilibrium.thread_count)) {
+          return judgement_of(*assessment);
+        }
+      }
+    }
+    return plan::judge(robot, options_.equilibrium);
+  }
+
+  CoreResponse* core_of_robot() {
+    if (!is_core_sought_ && robot_.modules().size() <= kLossCoreCountMax) {
+      auto robot = model::Robot::create(spec_, options_.equilibrium.thread_count);
+      HOLDFAST_CHECK(robot.has_value());
+      core_ = CoreResponse::make(std::move(robot).value(), options_.equilibrium);
+    }
+    is_core_sought_ = true;
+    return core_.get();
+  }
+
+  /// Whether an answer says how much is carried after a loss.
+  static bool has_ratio(const std::optional<LossAnswer>& answer, bool is_bound) {
+    return answer->load_ratio_max && answer->verdict != Verdict::kUnstable &&
+           answer->is_bound == is_bound;
+  }
+
+  double largest_ratio() const {
+    double largest = -std::numeric_limits<double>::infinity();
+    for (const auto& answer : answers_) {
+      largest = has_ratio(answer, false) ? std::max(largest, *answer->load_ratio_max) : largest;
+    }
+    return largest;
+  }
+
+  /// Judges those exactly whose bound is above all that is known exactly, the largest first.
+  void refine() {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < answers_.size(); ++i) {
+      if (has_ratio(answers_[i], true)) {
+        order.push_back(i);
+      }
+    }
+    std::ranges::stable_sort(order, std::ranges::greater(),
+                             [&](std::size_t i) { return *answers_[i]->load_ratio_max; });
+    double largest = largest_ratio();
+    if (!judge_) {
+      return;
+    }
+    const std::size_t count = std::min(order.size(), kRefinedMax);
+    for (std::size_t first = 0; first < count; first += solver::kLaneCount) {
+      if (*answers_[order[first]]->load_ratio_max <= largest) {
+        break;
+      }
+      const auto begin = order.begin() + static_cast<std::ptrdiff_t>(first);
+      const std::size_t size = std::min(solver::kLaneCount, count - first);
+      judge_all({begin, begin + static_cast<std::ptrdiff_t>(size)}, true);
+      largest = std::max(largest, largest_ratio());
+    }
+  }
+
+  void conclude(LossReport& report) const {
+    const double largest = largest_ratio();
+    for (const auto& answer : answers_) {
+      if (answer->is_fatal()) {
+        report.fatal.push_back(*answer);
+      } else if (answer->verdict != Verdict::kSafe) {
+        report.undecided.push_back(*answer);
+      }
+      const bool counts = has_ratio(answer, false) ||
+                          (has_ratio(answer, true) && *answer->load_ratio_max > largest);
+      if (counts && (!report.worst || *answer->load_ratio_max > *report.worst->load_ratio_max)) {
+        report.worst = *answer;
+      }
+    }
+  }
+
+  const model::RobotSpec& spec_;
+  const model::Robot& robot_;
+  LossOptions options_;
+  std::function<bool()> not_interrupted_ = {};
+  Patience patience_;
+  std::vector<LostPart> parts_;
+  std::vector<std::optional<LossAnswer>> answers_;
+  std::unique_ptr<LossJudge> judge_;
+  bool is_core_sought_ = false;
+  std::unique_ptr<CoreResponse> core_;
+};
+
+}  // namespace
+
+std::string_view name(LossKind kind) {
+  constexpr std::array<std::string_view, kLossKindCount> kNames = {"connection", "module", "foot"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+LossReport lose_each(const model::RobotSpec& spec, const LossOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto robot = model::Robot::create(spec, options.equilibrium.thread_count);
+  HOLDFAST_CHECK(robot.has_value());
+  LossReport report = LossSearch(spec, robot.value(), options).find();
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return report;
+}
+
+}  // namespace holdfast::plan

@@ -1,0 +1,198 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Probabilities against closed forms (one connection; products of lognormal numbers, which are
+// lognormal), and against samples of strengths.
+#include "holdfast/verdict/reliability.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "holdfast/base/rng.hpp"
+#include "random_robot.hpp"
+#include "seeds.hpp"
+
+namespace holdfast::verdict {
+namespace {
+
+using enum StrengthDistribution;
+
+constexpr std::array kAll = {kLognormal, kNormal, kWeibull};
+
+double normal_below(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
+
+/// The probability that a lognormal number of mean 1 is at most `value`.
+double lognormal_below(double value, double variance_of_log) {
+  return normal_below((std::log(value) + variance_of_log / 2) / std::sqrt(variance_of_log));
+}
+
+double variance_of_log(double cv) { return std::log(1 + cv * cv); }
+
+TEST(Reliability, of_one_connection_is_its_distribution_even_far_out) {
+  for (const double ratio : {0.05, 0.3, 0.7, 0.95, 1.0, 1.3}) {
+    const double fails = lognormal_below(ratio, variance_of_log(0.1));
+    const Reliability found = find_reliability(std::array{ratio}, {.cv = 0.1});
+    EXPECT_NEAR(found.fails, fails, 1e-11 * fails) << ratio;
+    EXPECT_NEAR(found.holds, 1 - fails, 1e-12) << ratio;
+    ASSERT_EQ(found.likeliest.size(), 1U);
+    EXPECT_NEAR(found.likeliest[0].share, 1, 1e-12);
+  }
+  const double normal = normal_below((0.4 - 1) / 0.05);  // 12 standard deviations out.
+  EXPECT_NEAR(
+      find_reliability(std::array{0.4}, {.distribution = kNormal, .cv = 0.05}).fails / normal, 1,
+      1e-11);
+}
+
+TEST(Reliability, of_many_is_the_product_with_all_digits_of_small_probabilities) {
+  const double one = lognormal_below(0.4, variance_of_log(0.1));
+  ASSERT_LT(one, 1e-18);  // 1 - one is 1.
+  const std::vector<double> many(1000, 0.4);
+  EXPECT_NEAR(find_reliability(many, {.cv = 0.1}).fails / (1000 * one), 1, 1e-9);
+}
+
+/// G s is lognormal, and the variances of the logarithms add up.
+TEST(Reliability, with_a_common_factor_is_that_of_a_product_of_two) {
+  for (const auto& [own, common] : std::vector<std::pair<double, double>>{
+           {0.1, 0.05}, {0.1, 0.1}, {0.02, 0.2}, {0.001, 0.5}, {0.5, 0.001}, {1, 1}}) {
+    const double variance = variance_of_log(own) + variance_of_log(common);
+    for (const double z : {-7.0, -3.0, 0.0, 1.0}) {
+      const double ratio = std::exp(z * std::sqrt(variance) - variance / 2);
+      const Reliability found =
+          find_reliability(std::array{ratio}, {.cv = own, .common_cv = common});
+      EXPECT_NEAR(found.fails / normal_below(z), 1, 1e-9) << own << " " << common << " " << z;
+      EXPECT_NEAR(found.holds, 1 - normal_below(z), 1e-10);
+    }
+  }
+}
+
+TEST(Reliability, of_connections_in_step_lies_between_the_worst_and_all_by_themselves) {
+  const std::vector<double> ratios = {0.8, 0.79, 0.75, 0.7, -0.5, 0};
+  for (const StrengthDistribution distribution : kAll) {
+    const double alone =
+        find_reliability(std::array{0.8}, {.distribution = distribution, .cv = 0.1}).fails;
+    const double apart = find_reliability(ratios, {.distribution = distribution, .cv = 0.1}).fails;
+    const double together =
+        find_reliability(ratios, {.distribution = distribution, .cv = 1e-3, .common_cv = 0.1})
+            .fails;
+    EXPECT_GT(apart, alone);
+    EXPECT_NEAR(together, alone, 0.02 * alone) << name(distribution);
+  }
+}
+
+TEST(Reliability, factors_have_the_mean_one_and_the_given_cv) {
+  for (const StrengthDistribution distribution : kAll) {
+    for (const double cv : {0.003, 0.05, 0.15}) {
+      const ScatteredFactor factor(distribution, cv);
+      double mean = 0;
+      double square = 0;
+      for (int i = -1000; i <= 1000; ++i) {
+        const double z = i * 0.01;
+        const double weight = 0.01 * std::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi);
+        mean += weight * factor.at_normal(z);
+        square += weight * std::pow(factor.at_normal(z) - 1, 2);
+        EXPECT_NEAR(factor.below(factor.at_normal(z)), normal_below(z), 1e-9);
+      }
+      EXPECT_NEAR(mean, 1, 1e-8) << name(distribution) << cv;
+      EXPECT_NEAR(std::sqrt(square), cv, 1e-7 * cv) << name(distribution) << cv;
+    }
+  }
+}
+
+TEST(Reliability, is_as_asked_with_strengths_times_the_factors) {
+  const std::vector<double> ratios = {0.9, 0.85, 0.5, 0.1, -1};
+  for (const StrengthDistribution distribution : kAll) {
+    for (const double common : {0.0, 0.05}) {
+      const StrengthScatter scatter = {
+          .distribution = distribution, .cv = 0.12, .common_cv = common};
+      const Reliability found = find_reliability(ratios, scatter);
+      for (const auto& [factor, holds] : {std::pair(*found.strength_factor_99, 0.99),
+                                          std::pair(*found.strength_factor_999, 0.999)}) {
+        std::vector<double> less = ratios;
+        std::ranges::transform(less, less.begin(), [f = factor](double r) { return r / f; });
+        EXPECT_NEAR(find_reliability(less, scatter).holds, holds, 1e-6);
+      }
+    }
+  }
+}
+
+TEST(Reliability, has_no_factor_where_none_helps_and_needs_none_without_tension) {
+  const Reliability wild = find_reliability(std::array{0.5}, {.distribution = kNormal, .cv = 1});
+  EXPECT_FALSE(wild.strength_factor_99);  // 16 % of these have no strength at all.
+  const Reliability pressed = find_reliability(std::array{-0.5, 0.0}, {.cv = 0.3});
+  EXPECT_EQ(pressed.holds, 1);
+  EXPECT_EQ(pressed.fails, 0);
+  EXPECT_TRUE(pressed.likeliest.empty());
+  EXPECT_FALSE(pressed.strength_factor_999);
+}
+
+/// One strength after the other, by Box and Muller.
+class Sampler {
+ public:
+  explicit Sampler(std::uint64_t seed) : rng_(seed) {}
+
+  double factor(StrengthDistribution distribution, double cv) {
+    if (cv == 0) {
+      return 1;
+    }
+    const ScatteredFactor law(distribution, cv);
+    return law.at_normal(normal());
+  }
+
+  double normal() {
+    const double size = std::sqrt(-2 * std::log(1 - uniform()));
+    return size * std::cos(2 * std::numbers::pi * uniform());
+  }
+
+ private:
+  double uniform() { return static_cast<double>(rng_.next() >> 11U) * 0x1p-53; }
+
+  base::Rng rng_;
+};
+
+/// Against the share of samples in which all connections hold.
+TEST(Reliability, is_that_of_samples_on_random_robots) {
+  const int robot_count = test::campaign(20);
+  const int sample_count = test::campaign(4000);
+  int counted = 0;
+  for (std::uint64_t seed = 0; counted < robot_count; ++seed) {
+    const auto robot = model::Robot::create(test::random_robot(seed));
+    ASSERT_TRUE(robot);
+    const Assessment assessment = assess(robot.value());
+    if (!assessment.is_stable || !assessment.worst) {
+      continue;
+    }
+    const double scale = 0.85 / *assessment.load_ratio_max;
+    std::vector<double> ratios;
+    for (const ConnectionResult& one : assessment.connections) {
+      ratios.push_back(one.load_ratio * scale);
+    }
+    const StrengthScatter scatter = {
+        .distribution = kAll[seed % 3], .cv = 0.1, .common_cv = seed % 2 == 0 ? 0.08 : 0.0};
+    const Reliability found = find_reliability(ratios, scatter);
+    Sampler sampler(seed);
+    const ScatteredFactor own(scatter.distribution, scatter.cv);
+    int holds = 0;
+    for (int i = 0; i < sample_count; ++i) {
+      const double common = sampler.factor(scatter.distribution, scatter.common_cv);
+      bool is_whole = true;
+      for (const double ratio : ratios) {
+        is_whole = (ratio <= 0 || common * own.at_normal(sampler.normal()) > ratio) && is_whole;
+      }
+      holds += is_whole ? 1 : 0;
+    }
+    const double sigma = std::sqrt(found.holds * found.fails / sample_count);
+    EXPECT_NEAR(static_cast<double>(holds) / sample_count, found.holds,
+                4 * sigma + 1.0 / sample_count)
+        << "seed " << seed;
+    ++counted;
+  }
+}
+
+}  // namespace
+}  // namespace holdfast::verdict
