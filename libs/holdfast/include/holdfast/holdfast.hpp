@@ -124,8 +124,9 @@ struct CheckResult {
 /// The library's version, "major.minor.patch".
 std::string_view version();
 
-/// Reads a whole file of text, or one of a format with zero bytes, such as a binary structure; "-" is standard input. Errors: a folder, too
-/// large, not readable, a zero byte in a text, at which reading ends.
+/// Reads a whole file of text, or one of a format with zero bytes, such as a binary structure; "-"
+/// is standard input. Errors: a folder, too large, not readable, a zero byte in a text, at which
+/// reading ends.
 base::Result<std::string> read_file(const std::filesystem::path& path);
 
 /// Writes a whole file or nothing, as host::OutputFile does; "-" is standard output.

@@ -71,8 +71,7 @@ std::optional<TextBrick> text_brick(std::string_view line) {
   }
   const auto along_x = parse_number<std::int32_t>(line.substr(0, cross));
   const auto along_y = parse_number<std::int32_t>(line.substr(cross + 1, open - cross - 1));
-  const auto corner =
-      parse_triple<std::int32_t>(line.substr(open + 1, line.size() - open - 2));
+  const auto corner = parse_triple<std::int32_t>(line.substr(open + 1, line.size() - open - 2));
   if (!along_x || !along_y || !corner || std::min(*along_x, *along_y) < 1 ||
       std::max(*along_x, *along_y) > kBrickLengthMax) {
     return std::nullopt;
@@ -113,8 +112,7 @@ class LDrawGrid {
     }
     const auto turned = turned_size(numbers, *size);
     if (!turned) {
-      reading_.fail_at(line,
-                       "a part is turned otherwise than by right angles about the vertical");
+      reading_.fail_at(line, "a part is turned otherwise than by right angles about the vertical");
       return;
     }
     reading_.line = line;
@@ -128,8 +126,8 @@ class LDrawGrid {
     const auto at = [&](std::size_t row, std::size_t column) {
       return numbers[3 + 3 * row + column];
     };
-    const bool is_upright = at(1, 1) == 1 && at(0, 1) == 0 && at(1, 0) == 0 && at(1, 2) == 0 &&
-                            at(2, 1) == 0;
+    const bool is_upright =
+        at(1, 1) == 1 && at(0, 1) == 0 && at(1, 0) == 0 && at(1, 2) == 0 && at(2, 1) == 0;
     const auto is_unit = [](double number) { return std::abs(number) == 1; };
     if (is_upright && is_unit(at(0, 0)) && is_unit(at(2, 2)) && at(0, 2) == 0 && at(2, 0) == 0) {
       return size;

@@ -65,8 +65,9 @@ CellColumns named_columns(ForeignReading& reading, const std::vector<std::string
     }
   }
   if (!columns.x || !columns.y || !columns.z) {
-    reading.fail_at(line, "the first line names columns, but not x, y and z: expected x,y,z or "
-                          "id,x,y,z");
+    reading.fail_at(line,
+                    "the first line names columns, but not x, y and z: expected x,y,z or "
+                    "id,x,y,z");
   }
   return columns;
 }
@@ -77,13 +78,15 @@ CellColumns unnamed_columns(ForeignReading& reading, std::size_t count, std::siz
     return {.count = 3, .x = 0, .y = 1, .z = 2};
   }
   if (count == 4) {
-    reading.warn_of_all("of four columns without names, the first is taken for a number of the "
-                        "module, the others for x, y, z");
+    reading.warn_of_all(
+        "of four columns without names, the first is taken for a number of the "
+        "module, the others for x, y, z");
     return {.count = 4, .x = 1, .y = 2, .z = 3, .id = 0};
   }
   if (count == 7) {
-    reading.warn_of_all("of seven columns without names, the first are taken for x, y, z, the "
-                        "others for a colour, which is not read");
+    reading.warn_of_all(
+        "of seven columns without names, the first are taken for x, y, z, the "
+        "others for a colour, which is not read");
     return {.count = 7, .x = 0, .y = 1, .z = 2};
   }
   reading.fail_at(line, fmt::format("expected three numbers, found {}: x,y,z or id,x,y,z, or a "
@@ -100,8 +103,8 @@ class CellRows {
 
   void read(const std::vector<std::string_view>& row, std::size_t line) {
     if (row.size() != columns_.count) {
-      reading_.fail_at(line, fmt::format("expected {} columns, found {}",
-                                         columns_.count, row.size()));
+      reading_.fail_at(line,
+                       fmt::format("expected {} columns, found {}", columns_.count, row.size()));
       return;
     }
     const auto number = [&](std::size_t column) {

@@ -41,13 +41,27 @@ constexpr auto kImporters = std::to_array<Importer>(
      {{"BrickGPT text", ".txt", "lines such as 2x4 (0,0,0), one cell for each stud", kBricksLost},
       is_brick_text,
       read_brick_text},
-     {{"JSON of cells", ".json",
-       "a list of [x,y,z]; \"modules\" or \"cells\" of such lists or of objects with \"position\" "
-       "(pathfinder); \"cubes\" of x and y (compacting-squares), as an upright wall; \"bodies\" "
-       "with \"pos\" (RoFI voxels); bricks by number with \"brick_id\" (StableLego)",
-       "masses, joints and what else is not a place or a colour; of bricks that they are rigid and "
-       "not joined side by side"},
-      is_json_cells,
+     {{"StableLego", ".json", "bricks by number with \"brick_id\", one cell for each stud",
+       kBricksLost},
+      is_stable_lego,
+      read_json_cells},
+     {{"RoFI voxels", ".json", "\"bodies\" with \"pos\", one cell for each half of a module",
+       "that two bodies are one module, its joints, and faces that touch but are not connected"},
+      is_rofi_voxels,
+      read_json_cells},
+     {{"pathfinder", ".json",
+       "\"modules\" with \"position\", as modular-robotics of the Modular Robotics Group has them; "
+       "those of two numbers are an upright wall",
+       "properties other than a colour, and which modules stay where they are"},
+      is_pathfinder,
+      read_json_cells},
+     {{"compacting-squares", ".json", "\"cubes\" of x and y, as an upright wall",
+       "nothing but colours"},
+      is_squares,
+      read_json_cells},
+     {{"JSON of cells", ".json", "a list of [x,y,z], or an object with it as modules or cells",
+       "everything but cells"},
+      is_json_list,
       read_json_cells},
      {{"list of cells", ".csv .xyz .txt",
        "a line for each module: x,y,z or id,x,y,z; a first line may name the columns x, y, z, id "
@@ -167,11 +181,11 @@ void ForeignReading::add(double x, double y, double z, std::optional<Color> colo
     }
   }
   if (take_room(1, [&] { return line == 0 ? std::string() : fmt::format("line {}", line); })) {
-    document.modules.push_back({{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y),
-                                 static_cast<std::int32_t>(z)},
-                                is_fixed,
-                                color,
-                                {}});
+    document.modules.push_back(
+        {{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), static_cast<std::int32_t>(z)},
+         is_fixed,
+         color,
+         {}});
   }
 }
 

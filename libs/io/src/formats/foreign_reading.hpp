@@ -71,7 +71,12 @@ std::vector<std::string_view> split_row(std::string_view line);
 bool is_cell_list(std::string_view text, std::string_view ending);
 void read_cell_list(ForeignReading& reading);
 
-bool is_json_cells(std::string_view text, std::string_view ending);
+bool is_json_list(std::string_view text, std::string_view ending);
+bool is_pathfinder(std::string_view text, std::string_view ending);
+bool is_squares(std::string_view text, std::string_view ending);
+bool is_rofi_voxels(std::string_view text, std::string_view ending);
+bool is_stable_lego(std::string_view text, std::string_view ending);
+/// Reads any of these five.
 void read_json_cells(ForeignReading& reading);
 
 bool is_vox(std::string_view text, std::string_view ending);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 
 #include "formats/bricks.hpp"
 #include "formats/foreign_reading.hpp"
@@ -16,45 +17,69 @@
 namespace holdfast::io {
 namespace {
 
-/// A key under which other programs list their cells.
-struct CellKey {
+/// What JSON of cells is, by its keys.
+enum class CellsKind : std::uint8_t { kNone, kList, kPathfinder, kSquares, kVoxels, kBricks };
+
+/// Where a kind lists its cells, and what must be in an entry.
+struct CellsKey {
+  CellsKind kind;
   std::string_view list;
-  std::string_view place;  ///< Key of the cell in an entry that is an object.
+  std::string_view entry;
 };
 
-constexpr auto kCellKeys = std::to_array<CellKey>({{"modules", "position"},
-                                                   {"cells", "position"},
-                                                   {"bodies", "pos"},
-                                                   {"cubes", ""}});
+/// The first row that fits counts.
+constexpr auto kCellsKeys =
+    std::to_array<CellsKey>({{CellsKind::kPathfinder, "modules", "position"},
+                             {CellsKind::kSquares, "cubes", "x"},
+                             {CellsKind::kVoxels, "bodies", "pos"},
+                             {CellsKind::kList, "modules", ""},
+                             {CellsKind::kList, "cells", ""}});
+
+const CellsKey* find_key(const Json& root) {
+  const auto* const found = std::ranges::find_if(kCellsKeys, [&](const CellsKey& key) {
+    const auto list = root.find(key.list);
+    if (list == root.end() || !list->is_array() || list->empty()) {
+      return false;
+    }
+    const Json& first = list->front();
+    return key.entry.empty() ? first.is_array() : first.is_object() && first.contains(key.entry);
+  });
+  return found == kCellsKeys.end() ? nullptr : found;
+}
 
 bool is_brick(const Json& value) {
   return value.is_object() && value.contains("brick_id") && value.contains("x") &&
          value.contains("y") && value.contains("z");
 }
 
-/// The key under which a root has its cells; nullptr if it has none.
-const CellKey* find_key(const Json& root) {
-  const auto* const found = std::ranges::find_if(kCellKeys, [&](const CellKey& key) {
-    const auto list = root.find(key.list);
-    return list != root.end() && list->is_array();
-  });
-  return found == kCellKeys.end() ? nullptr : found;
-}
-
-bool holds_cells(const Json& root) {
+CellsKind kind_of(const Json& root) {
   if (root.is_array()) {
-    return !root.empty() && root.front().is_array();
+    return !root.empty() && root.front().is_array() ? CellsKind::kList : CellsKind::kNone;
   }
   if (!root.is_object() || root.empty()) {
-    return false;
+    return CellsKind::kNone;
   }
   // What has more of our keys is our format without its heading, of which nothing may be lost.
   for (const std::string_view key : kAllTopKeys) {
     if (!is_one_of(key, {"modules", "name", "description"}) && root.contains(key)) {
-      return false;
+      return CellsKind::kNone;
     }
   }
-  return find_key(root) != nullptr || is_brick(*root.begin());
+  const CellsKey* const key = find_key(root);
+  return key != nullptr            ? key->kind
+         : is_brick(*root.begin()) ? CellsKind::kBricks
+                                   : CellsKind::kNone;
+}
+
+bool is_cells(std::string_view text, std::string_view ending, CellsKind kind) {
+  text = trimmed(without_bom(text));
+  const bool may_be = text.starts_with('{') || text.starts_with('[');
+  if (!may_be || text.substr(0, 4096).find(kJsonFormatName) != std::string_view::npos ||
+      (!ending.empty() && ending != ".json" && ending != ".txt")) {
+    return false;
+  }
+  const auto root = parse_json(text);
+  return root && kind_of(root.value()) == kind;
 }
 
 /// Takes cells out of a tree; the failures of values go over to the reading of the file.
@@ -64,13 +89,18 @@ class JsonCells {
 
   void read(const Json& root) {
     const JsonPlace top;
-    const CellKey* const key = root.is_object() ? find_key(root) : nullptr;
+    const CellsKey* const key = root.is_object() ? find_key(root) : nullptr;
     if (root.is_array()) {
-      read_list(root, top, {"", "position"});
+      read_list(root, top, CellsKind::kList);
     } else if (key != nullptr) {
-      read_list(*root.find(key->list), top.at(key->list), *key);
+      read_list(*root.find(key->list), top.at(key->list), key->kind);
     } else {
       read_bricks(root, top);
+    }
+    if (is_upright_) {
+      reading_.warn_of_all(
+          "places have two numbers, so they are read as an upright wall: the "
+          "second number is a height");
     }
   }
 
@@ -81,19 +111,21 @@ class JsonCells {
     }
   }
 
-  void read_list(const Json& list, const JsonPlace& place, const CellKey& key) {
+  void read_list(const Json& list, const JsonPlace& place, CellsKind kind) {
     for (std::size_t i = 0; i < list.size() && !reading_.has_failed(); ++i) {
       const JsonPlace here = place.at(i);
-      if (list[i].is_object()) {
-        read_entry(list[i], here, key);
-      } else {
-        add(values_.cell(list[i], here), std::nullopt, false);
-      }
+      const base::Cell cell = read_place(list[i], here, kind);
       take_failure();
+      if (!reading_.has_failed()) {
+        reading_.add(cell.x, cell.y, cell.z, color_of(list[i]));
+      }
     }
   }
 
-  void read_entry(const Json& entry, const JsonPlace& place, const CellKey& key) {
+  base::Cell read_place(const Json& entry, const JsonPlace& place, CellsKind kind) {
+    if (kind == CellsKind::kList) {
+      return values_.cell(entry, place);
+    }
     const auto at = [&](std::string_view name) -> const Json& {
       const auto found = entry.find(name);
       if (found == entry.end()) {
@@ -102,19 +134,28 @@ class JsonCells {
       }
       return *found;
     };
-    if (key.place.empty()) {
+    if (kind == CellsKind::kSquares) {
+      is_upright_ = true;
       const std::int32_t x = values_.integer(at("x"), place.at("x"), kCoordinateRange);
       const std::int32_t y = values_.integer(at("y"), place.at("y"), kCoordinateRange);
-      add({x, 0, y}, color_of(entry), false);
-      return;
+      return {x, 0, y};
     }
-    const std::string_view name = entry.contains(key.place) ? key.place : "cell";
-    const base::Cell cell = values_.cell(at(name), place.at(name));
-    add(cell, color_of(entry), false);
+    const std::string_view name = kind == CellsKind::kVoxels ? "pos" : "position";
+    const JsonPlace here = place.at(name);
+    const Json& numbers = at(name);
+    if (numbers.is_array() && numbers.size() == 2) {
+      is_upright_ = true;
+      return {values_.integer(numbers[0], here.at(std::size_t{0}), kCoordinateRange), 0,
+              values_.integer(numbers[1], here.at(std::size_t{1}), kCoordinateRange)};
+    }
+    return values_.cell(numbers, here);
   }
 
   /// A colour of three numbers, of the entry or of its properties; what is none is left out.
   static std::optional<Color> color_of(const Json& entry) {
+    if (!entry.is_object()) {
+      return std::nullopt;
+    }
     const Json* value = entry.contains("color") ? &entry["color"] : nullptr;
     for (const Json* inner = &entry; value == nullptr && inner->is_object();) {
       const char* const name = inner == &entry ? "properties" : "colorProperty";
@@ -139,10 +180,6 @@ class JsonCells {
       color[i] = static_cast<int>((*value)[i].get<double>());
     }
     return Color{color[0], color[1], color[2]};
-  }
-
-  void add(const base::Cell& cell, std::optional<Color> color, bool is_fixed) {
-    reading_.add(cell.x, cell.y, cell.z, color, is_fixed);
   }
 
   /// Bricks by number, whose sizes StableLego keeps in a library.
@@ -171,26 +208,35 @@ class JsonCells {
       if (reading_.has_failed()) {
         return;
       }
-      add_brick(reading_, corner,
-                is_turned ? BrickSize{size->along_y, size->along_x} : *size);
+      add_brick(reading_, corner, is_turned ? BrickSize{size->along_y, size->along_x} : *size);
     }
   }
 
   ForeignReading& reading_;
   JsonReading values_;
+  bool is_upright_ = false;
 };
 
 }  // namespace
 
-bool is_json_cells(std::string_view text, std::string_view ending) {
-  text = trimmed(without_bom(text));
-  const bool may_be = text.starts_with('{') || text.starts_with('[');
-  if (!may_be || text.substr(0, 4096).find(kJsonFormatName) != std::string_view::npos ||
-      (!ending.empty() && ending != ".json" && ending != ".txt")) {
-    return false;
-  }
-  const auto root = parse_json(text);
-  return root && holds_cells(root.value());
+bool is_json_list(std::string_view text, std::string_view ending) {
+  return is_cells(text, ending, CellsKind::kList);
+}
+
+bool is_pathfinder(std::string_view text, std::string_view ending) {
+  return is_cells(text, ending, CellsKind::kPathfinder);
+}
+
+bool is_squares(std::string_view text, std::string_view ending) {
+  return is_cells(text, ending, CellsKind::kSquares);
+}
+
+bool is_rofi_voxels(std::string_view text, std::string_view ending) {
+  return is_cells(text, ending, CellsKind::kVoxels);
+}
+
+bool is_stable_lego(std::string_view text, std::string_view ending) {
+  return is_cells(text, ending, CellsKind::kBricks);
 }
 
 void read_json_cells(ForeignReading& reading) {
@@ -199,7 +245,7 @@ void read_json_cells(ForeignReading& reading) {
     reading.fail(root.error());
     return;
   }
-  if (!holds_cells(root.value())) {
+  if (kind_of(root.value()) == CellsKind::kNone) {
     reading.fail({base::ErrorCode::kBadInput, "expected a list of cells [x,y,z]"});
     return;
   }

@@ -37,9 +37,9 @@ bool is_text_stl(std::string_view text) {
 
 bool expect_triangles(ForeignReading& reading, std::size_t count) {
   if (count == 0 || count > kTriangleCountMax) {
-    reading.fail({base::ErrorCode::kBadInput,
-                  fmt::format("the mesh has {} triangles, expected 1 to {}", count,
-                              kTriangleCountMax)});
+    reading.fail(
+        {base::ErrorCode::kBadInput,
+         fmt::format("the mesh has {} triangles, expected 1 to {}", count, kTriangleCountMax)});
   }
   return !reading.has_failed();
 }
@@ -61,12 +61,11 @@ void read_binary_stl(ForeignReading& reading) {
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t corner = 0; corner < 3; ++corner) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const std::size_t at =
-            kStlHead + kStlTriangle * i + kStlCorner * (corner + 1) + 4 * axis;
+        const std::size_t at = kStlHead + kStlTriangle * i + kStlCorner * (corner + 1) + 4 * axis;
         const double number = std::bit_cast<float>(stl_word(bytes, at));
         if (!std::isfinite(number)) {
-          reading.fail({base::ErrorCode::kBadInput,
-                        fmt::format("a corner of triangle {} is no number", i)});
+          reading.fail(
+              {base::ErrorCode::kBadInput, fmt::format("a corner of triangle {} is no number", i)});
           return;
         }
         triangles[i][corner][axis] = number;
@@ -81,8 +80,7 @@ MeshPoint point_of(ForeignReading& reading, const std::vector<std::string_view>&
                    std::size_t from, std::size_t line) {
   MeshPoint point{};
   for (std::size_t i = 0; i < 3; ++i) {
-    const auto number =
-        from + i < row.size() ? parse_number<double>(row[from + i]) : std::nullopt;
+    const auto number = from + i < row.size() ? parse_number<double>(row[from + i]) : std::nullopt;
     if (!number) {
       reading.fail_at(line, "expected three numbers of a corner");
       return {};
@@ -148,7 +146,8 @@ void add_face(ForeignReading& reading, const std::vector<std::string_view>& row,
     }
     corners.push_back(*index);
   }
-  if (corners.size() < 3 || row.size() == kColumnCountMax || triangles.size() + corners.size() > kTriangleCountMax) {
+  if (corners.size() < 3 || row.size() == kColumnCountMax ||
+      triangles.size() + corners.size() > kTriangleCountMax) {
     reading.fail_at(line, fmt::format("a face has {} corners, expected 3 to {}, and {} triangles "
                                       "in all at most",
                                       corners.size(), kColumnCountMax - 2, kTriangleCountMax));

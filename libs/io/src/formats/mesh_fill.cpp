@@ -65,8 +65,8 @@ std::optional<double> height_at(const MeshTriangle& triangle, double x, double y
 
 /// Triangles in cells, from the lowest corner on.
 std::optional<std::vector<MeshTriangle>> in_cells(ForeignReading& reading,
-                                              const std::vector<MeshTriangle>& triangles,
-                                              double pitch) {
+                                                  const std::vector<MeshTriangle>& triangles,
+                                                  double pitch) {
   constexpr double kFar = std::numeric_limits<double>::infinity();
   MeshPoint low = {kFar, kFar, kFar};
   MeshPoint high = {-kFar, -kFar, -kFar};

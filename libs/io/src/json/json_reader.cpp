@@ -330,9 +330,8 @@ void JsonReader::expect_goal_shapes() {
   }
   const bool has_steps =
       std::ranges::any_of(document.steps, [](const Step& step) { return !step.empty(); });
-  const bool has_empty = std::ranges::any_of(first, document.targets.end(), [](const Element& goal) {
-    return goal.children.empty();
-  });
+  const bool has_empty = std::ranges::any_of(
+      first, document.targets.end(), [](const Element& goal) { return goal.children.empty(); });
   if (has_steps || has_empty || !is_goal_shape(document.modules, goal_cells(*first).value())) {
     reading_.fail({base::ErrorCode::kBadInput,
                    "targets of the format \"grid\" are shapes to reach, which overlap the modules; "

@@ -306,9 +306,9 @@ base::Error with_other_lattice(base::Error error, const Document& document) {
   if (other != kNamedLattices.end()) {
     const auto* const modules =
         std::ranges::find(kSimulatedModules, other->lattice, &SimulatedModules::lattice);
-    error.message += fmt::format("; the lattice is {}, in {} it is connected: --lattice {}",
-                                 lattice_name(document.extension.lattice), other->name,
-                                 modules->name);
+    error.message +=
+        fmt::format("; the lattice is {}, in {} it is connected: --lattice {}",
+                    lattice_name(document.extension.lattice), other->name, modules->name);
   }
   return error;
 }

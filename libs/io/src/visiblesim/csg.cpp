@@ -96,9 +96,9 @@ bool Solid::contains(std::size_t index, const Point& point) const {
              std::none_of(node.children.begin() + 1, node.children.end(),
                           [&](std::size_t child) { return contains(child, point); });
     case Kind::kIntersection:
-      return !node.children.empty() &&
-             std::ranges::all_of(node.children,
-                                 [&](std::size_t child) { return contains(child, point); });
+      return !node.children.empty() && std::ranges::all_of(node.children, [&](std::size_t child) {
+        return contains(child, point);
+      });
     case Kind::kTranslate:
       return contains_any(node, {x - n[0], y - n[1], z - n[2]});
     case Kind::kRotate:
@@ -121,11 +121,10 @@ bool Solid::contains(std::size_t index, const Point& point) const {
 }
 
 Solid::Box Solid::bounds_of_children(const Node& node, bool is_exact) const {
-  const bool is_first_only =
-      node.kind == Kind::kDifference || node.kind == Kind::kIntersection;
+  const bool is_first_only = node.kind == Kind::kDifference || node.kind == Kind::kIntersection;
   Box box = empty_box();
-  for (std::size_t i = 0; i < (is_first_only ? std::min<std::size_t>(node.children.size(), 1)
-                                             : node.children.size());
+  for (std::size_t i = 0;
+       i < (is_first_only ? std::min<std::size_t>(node.children.size(), 1) : node.children.size());
        ++i) {
     const Box child = bounds(node.children[i], is_exact);
     if (child.low[0] <= child.high[0]) {

@@ -45,18 +45,18 @@ class SolidParser {
     bool is_leaf;
   };
 
-  static constexpr auto kWords = std::to_array<Word>({{"union", Kind::kUnion, 0, 0, false},
-                                                      {"difference", Kind::kDifference, 0, 0, false},
-                                                      {"intersection", Kind::kIntersection, 0, 0,
-                                                       false},
-                                                      {"translate", Kind::kTranslate, 3, 3, false},
-                                                      {"rotate", Kind::kRotate, 3, 3, false},
-                                                      {"scale", Kind::kScale, 3, 3, false},
-                                                      {"color", Kind::kColor, 3, 4, false},
-                                                      {"cube", Kind::kCube, 3, 3, true},
-                                                      {"sphere", Kind::kSphere, 1, 1, true},
-                                                      {"cylinder", Kind::kCylinder, 2, 3, true},
-                                                      {"torus", Kind::kTorus, 2, 2, true}});
+  static constexpr auto kWords =
+      std::to_array<Word>({{"union", Kind::kUnion, 0, 0, false},
+                           {"difference", Kind::kDifference, 0, 0, false},
+                           {"intersection", Kind::kIntersection, 0, 0, false},
+                           {"translate", Kind::kTranslate, 3, 3, false},
+                           {"rotate", Kind::kRotate, 3, 3, false},
+                           {"scale", Kind::kScale, 3, 3, false},
+                           {"color", Kind::kColor, 3, 4, false},
+                           {"cube", Kind::kCube, 3, 3, true},
+                           {"sphere", Kind::kSphere, 1, 1, true},
+                           {"cylinder", Kind::kCylinder, 2, 3, true},
+                           {"torus", Kind::kTorus, 2, 2, true}});
 
   void fail(const std::string& found) {
     if (!fault_) {
@@ -67,7 +67,14 @@ class SolidParser {
     }
   }
 
-  void skip_blanks() { rest_ = trimmed(rest_); }
+  /// Skips blanks and comments, which end at the next blank: XML makes one of a line's end.
+  void skip_blanks() {
+    rest_ = trimmed(rest_);
+    while (rest_.starts_with("//")) {
+      rest_.remove_prefix(std::min(rest_.find_first_of(" \n"), rest_.size()));
+      rest_ = trimmed(rest_);
+    }
+  }
 
   bool take(char mark) {
     skip_blanks();

@@ -27,8 +27,8 @@ std::optional<base::Cell> goal_cell(const Element& element) {
   }
   const std::array<std::int32_t, 3> none = {base::kCoordinateMax + 1, 0, 0};
   const auto [x, y, z] = parse_triple<std::int32_t>(*position).value_or(none);
-  const bool is_in_range = kCoordinateRange.contains(x) && kCoordinateRange.contains(y) &&
-                           kCoordinateRange.contains(z);
+  const bool is_in_range =
+      kCoordinateRange.contains(x) && kCoordinateRange.contains(y) && kCoordinateRange.contains(z);
   return is_in_range ? std::optional(base::Cell{x, y, z}) : std::nullopt;
 }
 
@@ -42,8 +42,8 @@ bool is_goal_shape(const std::vector<ModuleEntry>& modules, const Step& cells) {
   for (const ModuleEntry& module : modules) {
     taken.insert(module.cell);
   }
-  return std::ranges::any_of(
-      cells, [&](const PlannedEntry& entry) { return taken.contains(entry.cell); });
+  return std::ranges::any_of(cells,
+                             [&](const PlannedEntry& entry) { return taken.contains(entry.cell); });
 }
 
 bool is_goal(const Element& target) {
@@ -62,8 +62,7 @@ Element make_goal(const Step& cells) {
       cell.attributes.emplace_back("color",
                                    fmt::format("{},{},{}", color->red, color->green, color->blue));
     }
-    cell.attributes.insert(cell.attributes.end(), entry.attributes.begin(),
-                           entry.attributes.end());
+    cell.attributes.insert(cell.attributes.end(), entry.attributes.begin(), entry.attributes.end());
   }
   return target;
 }

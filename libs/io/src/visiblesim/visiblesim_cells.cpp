@@ -239,7 +239,7 @@ BoxRanges read_plain_ranges(XmlReading& reading, const pugi::xml_node& box, cons
   if (is_within(text, grid)) {
     const BoxRanges ranges = read_cell_ranges(reading, box, text, grid);
     const BoxRanges in_mm = may_be_mm ? ranges_in_mm(text, pitch, grid) : ranges;
-    if (in_mm.axes != ranges.axes) {
+    if (in_mm.axes != ranges.axes && in_mm.count() + ranges.count() > 0) {
       reading.warn_at(box, fmt::format("<blockBox> counts in cells, as VisibleSim does since 2022: "
                                        "{} modules; in mm, as it counted before, it would be {}",
                                        ranges.count(), in_mm.count()));
