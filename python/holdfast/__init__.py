@@ -21,7 +21,7 @@ from ._pictures import animate, plot_order, plot_steps
 from ._plans import (Moves, Order, Outcome, Places, Stage, Steps, move, next_places, order,
                      steps)
 from ._report import Remedies, Report, Timings
-from ._robot import Robot, families, generate, load
+from ._robot import Robot, families, foreign_formats, generate, load
 from ._verdict import Verdict
 
 Error.__module__ = PageNotFound.__module__ = 'holdfast'
@@ -31,5 +31,5 @@ __version__ = _core.version()
 
 __all__ = ['Error', 'Moves', 'Order', 'Outcome', 'PageNotFound', 'Places', 'Remedies', 'Report',
            'Robot', 'Run', 'Stage', 'Steps', 'Timings', 'Verdict', 'animate', 'check_many',
-           'families', 'generate', 'load', 'move', 'next_places', 'order', 'plot_order',
+           'families', 'foreign_formats', 'generate', 'load', 'move', 'next_places', 'order', 'plot_order',
            'plot_steps', 'robots', 'steps', 'table']

@@ -95,6 +95,24 @@ def _obstacle_list(obstacles: Any) -> Any:
     return obstacles
 
 
+def _how(lattice: str = '', robot: str = '', allow_unknown: bool = False,
+         supports: Union[int, str, None] = None, pitch: Optional[float] = None) -> dict[str, Any]:
+    """What readers are told beside the file."""
+    return {'lattice': lattice, 'robot': robot, 'allow_unknown': allow_unknown,
+            'supports': supports, 'pitch': pitch}
+
+
+def _level(supports: Any, cells: Any) -> Any:
+    """The layer that ``lowest`` means; other supports as they are."""
+    if not isinstance(supports, str):
+        return supports
+    if supports != 'lowest':
+        raise _core.Error(f"supports: expected a layer z, None, a mapping or 'lowest', found "
+                          f'{supports!r}')
+    array = np.asarray(cells)
+    return int(array[:, 2].min()) if array.ndim == 2 and array.shape[1:] == (3,) else 0
+
+
 def _head(options: Mapping[str, Any], supports: Any) -> str:
     """Holdfast JSON with all but the modules; empty if all is as it is by default."""
     said = {key: value for key, value in options.items() if value is not None}
@@ -178,7 +196,8 @@ class Robot:
         ``cubic``, ``face-centred``, ``hexagonal`` or ``hexagonal-prism``, or what VisibleSim calls
         its modules, such as ``catoms3D``.
     supports
-        The layer z whose modules rest on the floor; None: there is no floor; or a mapping with
+        The layer z whose modules rest on the floor, or ``lowest``; None: there is no floor; or a
+        mapping with
         ``support_z``, ``floor`` and ``obstacles`` of holdfast JSON.
     obstacles
         Cells that the environment occupies: (k, 3) cells, or a list as in holdfast JSON, such as
@@ -214,7 +233,8 @@ class Robot:
         head = _head({'lattice': lattice and _core.lattice_name(lattice),
                       'obstacles': _obstacle_list(obstacles), 'kinds': kinds,
                       'loads': _load_list(loads), 'gravity_m_s2': gravity, 'material': material,
-                      'robot': robot, 'steps': steps, 'name': name or None}, supports)
+                      'robot': robot, 'steps': steps, 'name': name or None},
+                     _level(supports, cells))
         self._held = _core.Structure.make(cells, planned, fixed, head,
                                           _own(cells, planned, masses, kind_of))
 
@@ -226,25 +246,30 @@ class Robot:
 
     @classmethod
     def from_file(cls, path: Path, *, lattice: str = '', robot: str = '',
-                  allow_unknown: bool = False) -> Robot:
-        """Reads VisibleSim XML, holdfast JSON, version 1 or 2, or a binary structure.
+                  allow_unknown: bool = False, supports: Union[int, str, None] = None,
+                  pitch: Optional[float] = None) -> Robot:
+        """Reads VisibleSim XML, holdfast JSON, version 1 or 2, a binary structure, or a file of
+        another program: `foreign_formats` lists them.
 
         `lattice` and `robot` say what the file leaves open. A key of holdfast JSON that is unknown
         is an error, unless it begins with ``x-``; with `allow_unknown` it is ignored and stands in
-        `warnings`.
+        `warnings`. `supports` is the layer z whose modules rest on the ground, or ``lowest``,
+        whatever the file says; `pitch` the edge of a module in the unit of a mesh.
         """
-        return cls._of(_core.Structure.load_file(path, lattice, robot, allow_unknown))
+        return cls._of(_core.Structure.load_file(
+            path, _how(lattice, robot, allow_unknown, supports, pitch)))
 
     @classmethod
     def from_text(cls, text: str, *, name: str = '', lattice: str = '', robot: str = '',
-                  allow_unknown: bool = False) -> Robot:
+                  allow_unknown: bool = False, supports: Union[int, str, None] = None) -> Robot:
         """Reads what `from_file` reads from a text.
 
         >>> text = Robot([[0, 0, 0]], name='one').json()
         >>> Robot.from_text(text)
         <holdfast.Robot 'one' of 1 module, cubic>
         """
-        return cls._of(_core.Structure.load_text(text, name, lattice, robot, allow_unknown))
+        return cls._of(_core.Structure.load_text(
+            text, name, _how(lattice, robot, allow_unknown, supports)))
 
     @classmethod
     def from_voxels(cls, voxels: npt.ArrayLike, *, origin: Sequence[int] = (0, 0, 0),
@@ -531,7 +556,7 @@ class Robot:
 
     def __setstate__(self, state: tuple[str]) -> None:
         if state[0] != self.name:
-            self._held = _core.Structure.load_text(self.json(), state[0], '', '', False)
+            self._held = _core.Structure.load_text(self.json(), state[0], _how())
 
     def __copy__(self) -> Robot:
         return self
@@ -547,9 +572,22 @@ class Robot:
                 f'{f" and {planned} planned" if planned else ""}, {self.lattice}>')
 
 
-def load(path: Path, *, lattice: str = '', robot: str = '', allow_unknown: bool = False) -> Robot:
+def load(path: Path, *, lattice: str = '', robot: str = '', allow_unknown: bool = False,
+         supports: Union[int, str, None] = None, pitch: Optional[float] = None) -> Robot:
     """Reads a robot, see `Robot.from_file`."""
-    return Robot.from_file(path, lattice=lattice, robot=robot, allow_unknown=allow_unknown)
+    return Robot.from_file(path, lattice=lattice, robot=robot, allow_unknown=allow_unknown,
+                           supports=supports, pitch=pitch)
+
+
+def foreign_formats() -> list[dict[str, str]]:
+    """The formats of other programs that `load` reads: their name, their endings, what becomes of
+    them, and what is lost.
+
+    >>> [row['name'] for row in foreign_formats() if '.vox' in row['endings']]
+    ['MagicaVoxel']
+    """
+    keys = ('name', 'endings', 'content', 'lost')
+    return [dict(zip(keys, row)) for row in _core.foreign_formats()]
 
 
 def generate(family: str, size: int) -> Robot:

@@ -19,8 +19,18 @@ SharedStructure share(base::Result<Structure> made, std::string_view file = {}) 
   return std::make_shared<const Structure>(take(std::move(made), file));
 }
 
-io::ReadOptions reading(const py::handle& lattice, const py::handle& robot, bool allow_unknown) {
-  io::ReadOptions options{.robot = utf8_of(robot, "robot"), .allow_unknown = allow_unknown};
+/// What readers are told beside the file: a dictionary with the keys lattice, robot, allow_unknown,
+/// supports and pitch.
+io::ReadOptions reading(const py::dict& given) {
+  const py::handle lattice = given["lattice"];
+  io::ReadOptions options{.robot = utf8_of(given["robot"], "robot"),
+                          .allow_unknown = given["allow_unknown"].cast<bool>()};
+  if (const py::handle supports = given["supports"]; !supports.is_none()) {
+    options.support = take(io::find_support_level(py::str(supports).cast<std::string>()));
+  }
+  if (const py::handle pitch = given["pitch"]; !pitch.is_none()) {
+    options.mesh_pitch = number_of(pitch, "pitch", 1e-9, 1e9);
+  }
   if (const std::string name = utf8_of(lattice, "lattice"); !name.empty()) {
     options.lattice = take(io::find_lattice(name));
   }
@@ -296,10 +306,17 @@ py::list catalogue() {
   return out;
 }
 
-SharedStructure from_file(const py::handle& given, const py::handle& lattice,
-                          const py::handle& robot, bool allow_unknown) {
+py::list foreign_formats() {
+  py::list out;
+  for (const io::ForeignFormat& format : io::foreign_formats()) {
+    out.append(py::make_tuple(format.name, format.endings, format.content, format.lost));
+  }
+  return out;
+}
+
+SharedStructure from_file(const py::handle& given, const py::dict& how) {
   const std::string path = path_of(given);
-  const io::ReadOptions options = reading(lattice, robot, allow_unknown);
+  const io::ReadOptions options = reading(how);
   auto read = take(without_gil([&] { return load_file(path, 0, options); }), path);
   // The name is the file's, which need not be UTF-8.
   const auto size = static_cast<py::ssize_t>(read.name.size());
@@ -313,11 +330,10 @@ SharedStructure from_file(const py::handle& given, const py::handle& lattice,
 void add_readers(py::class_<Structure, std::shared_ptr<Structure>>& type) {
   type.def_static("make", &make)
       .def_static("load_text",
-                  [](const py::handle& given, const py::handle& called, const py::handle& lattice,
-                     const py::handle& robot, bool allow_unknown) {
+                  [](const py::handle& given, const py::handle& called, const py::dict& how) {
                     const std::string text = utf8_of(given, "text");
                     const std::string name = utf8_of(called, "name");
-                    const io::ReadOptions options = reading(lattice, robot, allow_unknown);
+                    const io::ReadOptions options = reading(how);
                     return share(without_gil([&] { return load_text(text, name, 0, options); }),
                                  name);
                   })
@@ -389,6 +405,7 @@ void add_structure(py::module_& module) {
     take(without_gil([&] { return write_file(path, text); }), path);
   });
   module.def("catalogue", &catalogue);
+  module.def("foreign_formats", &foreign_formats);
   module.def("families", &family_list);
   module.def("version", &version);
 }

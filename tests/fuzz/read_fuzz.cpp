@@ -3,10 +3,13 @@
 //
 // Any bytes are either refused with one printable line, or read as a document that JSON and
 // VisibleSim XML give back as it is.
-// HOLDFAST_FUZZ_READER is the reader under test: read_json, read_visiblesim.
+// HOLDFAST_FUZZ_READER is the reader under test: read_json, read_visiblesim, or read_by_ending for
+// the formats of other programs, where the first byte says how the file's name ends.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
+#include <iterator>
+#include <string>
 #include <string_view>
 
 #include "holdfast/io/document.hpp"
@@ -29,6 +32,17 @@ void demand(bool is_true) {
 bool is_printable_line(std::string_view text) {
   return text.size() <= kLineBytesMax &&
          std::ranges::all_of(text, [](char c) { return c >= ' ' && c <= '~'; });
+}
+
+[[maybe_unused]] base::Result<ReadDocument> read_by_ending(std::string_view bytes) {
+  constexpr std::string_view kEndings[] = {".csv", ".xyz", ".txt", ".json", ".vox",
+                                           ".stl", ".obj", ".ldr", ""};
+  if (bytes.empty()) {
+    return read_document(bytes);
+  }
+  const auto choice = static_cast<unsigned char>(bytes.front()) % std::size(kEndings);
+  return read_document(bytes.substr(1),
+                       {.ending = std::string(kEndings[choice]), .mesh_pitch = 1.0});
 }
 
 void demand_good_error(const base::Error& error) {

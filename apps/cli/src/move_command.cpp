@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <memory>
+#include <vector>
 
 #include "cell_text.hpp"
 #include "commands.hpp"
@@ -82,13 +82,18 @@ int show(const MoveArguments& options, const io::MoveReport& report) {
   return outcome_code(report.plan.outcome);
 }
 
+/// The file that the target is in: a goal shape is in that of the robot.
+const std::string& target_file(const MoveArguments& options) {
+  return options.target.empty() ? options.start : options.target;
+}
+
 int verify(const MoveArguments& options, const MoveRequest& request, const io::Document& start,
            const io::Document& target) {
   const auto text = read_file(options.verified);
   if (!text) {
     return fail(text.error(), options.verified);
   }
-  const auto check = verify_moves(named(start, options.start), named(target, options.target),
+  const auto check = verify_moves(named(start, options.start), named(target, target_file(options)),
                                   request, text.value());
   if (!check) {
     return fail(check.error(), options.verified);
@@ -135,17 +140,23 @@ MoveRequest request_of(const MoveArguments& options, Progress& progress) {
 }
 
 int run(const MoveArguments& options) {
-  const std::array<std::string, 3> inputs = {options.start, options.target, options.verified};
-  if (complain_of_outputs({inputs.data(), options.verified.empty() ? 2U : 3U}, options.outputs())) {
+  std::vector<std::string> inputs = {options.start};
+  for (const std::string& more : {options.target, options.verified}) {
+    if (!more.empty()) {
+      inputs.push_back(more);
+    }
+  }
+  if (complain_of_outputs(inputs, options.outputs())) {
     return kExitUsage;
   }
   const auto start = read(options.start, "the robot", options.reading);
   if (!start) {
     return fail(start.error(), options.start);
   }
-  const auto target = read(options.target, "the target", options.reading);
+  const auto target = options.target.empty() ? io::goal_of(start.value())
+                                             : read(options.target, "the target", options.reading);
   if (!target) {
-    return fail(target.error(), options.target);
+    return fail(target.error(), target_file(options));
   }
   Progress progress(options.is_quiet);
   const MoveRequest request = request_of(options, progress);
@@ -155,11 +166,12 @@ int run(const MoveArguments& options) {
   const Interruption interruption;
   auto sought = seek_moves(start.value(), target.value(), request);
   if (!sought) {
-    return fail(sought.error(), options.start + " " + options.target);
+    return fail(sought.error(),
+                options.start + (options.target.empty() ? "" : " " + options.target));
   }
   io::MoveReport report = std::move(sought).value();
   report.origin = options.reading.origin(options.start);
-  report.origin.target = options.target;
+  report.origin.target = target_file(options);
   return show(options, report);
 }
 
@@ -198,7 +210,11 @@ Command add_move(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "move", "Find moves of single modules from one shape to another, safe at every stage");
   add_required(*command, "FROM", options->start, "The robot as it stands; - is standard input");
-  add_required(*command, "TO", options->target, "The same modules in the shape that is wanted");
+  command
+      ->add_option("TO", options->target,
+                   "The same modules in the shape that is wanted; without it, the goal shape of "
+                   "FROM, a VisibleSim target that overlaps the robot")
+      ->type_name("");
   add_ways(*command, *options);
   add_limits(*command, *options);
   add_output(*command, "-o,--output", options->steps,
@@ -216,7 +232,8 @@ Command add_move(CLI::App& app) {
           {.examples = {{"move line.json bridge.json", "how does the robot get there?"},
                         {"move line.json bridge.json -o plan.json",
                          "keep the moves, for holdfast steps and view"},
-                        {"move a.json b.json --pivot", "cubes turn about their edges"}},
+                        {"move a.json b.json --pivot", "cubes turn about their edges"},
+                        {"move robot.xml", "to the goal shape that the file has itself"}},
            .notes = "A module slides along its neighbours or turns around a corner, while all "
                     "others stay in one piece. Every stage is checked as by holdfast steps; "
                     "one that is undecided does not count as safe. The first interrupt ends "

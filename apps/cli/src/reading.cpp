@@ -66,6 +66,25 @@ void add_reading(CLI::App& command, Reading& reading) {
         const auto found = io::find_setting(text);
         return found ? std::string() : found.error().message;
       });
+  command
+      .add_option_function<std::string>(
+          "--support-z",
+          [&options](const std::string& text) {
+            options.support = io::find_support_level(text).value();
+          },
+          "Let the modules of this layer rest on the ground, whatever the file says: its z, or "
+          "lowest")
+      ->type_name("Z")
+      ->check([](const std::string& text) {
+        const auto found = io::find_support_level(text);
+        return found ? std::string() : found.error().message;
+      });
+  command
+      .add_option_function<double>(
+          "--pitch", [&options](double pitch) { options.mesh_pitch = pitch; },
+          "Edge of a module in the unit of a mesh (.stl, .obj) that is filled with modules")
+      ->type_name("LENGTH")
+      ->check(number_between(1e-9, 1e9));
   command.add_flag(
       "--allow-unknown", options.allow_unknown,
       "Ignore keys of holdfast JSON that are unknown, with a note; without it they are "
@@ -73,11 +92,7 @@ void add_reading(CLI::App& command, Reading& reading) {
 }
 
 base::Result<io::ReadDocument> read_with_notes(const std::string& file, const Reading& reading) {
-  const auto text = read_file(file);
-  if (!text) {
-    return text.error();
-  }
-  auto read = io::read_document(text.value(), reading);
+  auto read = read_structure(file, reading);
   if (read) {
     print_notes(read.value().warnings, file);
   }

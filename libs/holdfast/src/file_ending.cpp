@@ -39,7 +39,8 @@ const std::vector<Endings>& formats() {
 constexpr std::string_view kOtherEndings[] = {".png", ".pdf",    ".jpg", ".jpeg", ".gif", ".eps",
                                               ".vtk", ".vtkhdf", ".stl", ".obj",  ".md"};
 
-/// The ending of a path in small letters, with its dot.
+}  // namespace
+
 std::string ending_of(std::string_view path) {
   std::string ending = std::filesystem::path(path).extension().string();
   std::ranges::transform(ending, ending.begin(), [](char letter) {
@@ -47,8 +48,6 @@ std::string ending_of(std::string_view path) {
   });
   return ending;
 }
-
-}  // namespace
 
 bool has_ending(std::string_view path, std::string_view ending) {
   return ending_of(path) == ending;

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <system_error>
 
+#include "holdfast/file_ending.hpp"
 #include "holdfast/holdfast.hpp"
 
 namespace holdfast {
@@ -18,15 +19,16 @@ base::Error unreadable(std::string message) {
   return {.code = base::ErrorCode::kUnreadable, .message = std::move(message)};
 }
 
-/// Reads to the end, to one byte beyond the limit or, unless it is a binary structure, to the first
-/// zero byte.
-base::Result<std::string> read_stream(std::istream& stream) {
+/// Reads to the end, to one byte beyond the limit or, unless it is a binary structure or of another
+/// format that has them, to the first zero byte.
+base::Result<std::string> read_stream(std::istream& stream, std::string_view ending) {
   std::string text;
   bool is_binary = false;
   char buffer[1U << 16U];
   while (stream.read(buffer, sizeof buffer) || stream.gcount() > 0) {
     const std::string_view block(buffer, static_cast<std::size_t>(stream.gcount()));
-    is_binary = is_binary || (text.empty() && block.starts_with(io::kBinaryMagic));
+    is_binary = is_binary || (text.empty() && (block.starts_with(io::kBinaryMagic) ||
+                                               io::may_have_zero_bytes(block, ending)));
     const std::size_t at = is_binary ? std::string_view::npos : block.find('\0');
     if (at != std::string_view::npos) {
       const bool is_utf16 =
@@ -52,7 +54,7 @@ base::Result<std::string> read_stream(std::istream& stream) {
 
 base::Result<std::string> read_file(const fs::path& path) {
   if (path == "-") {
-    return read_stream(std::cin);
+    return read_stream(std::cin, "");
   }
   std::error_code code;
   const fs::file_status status = fs::status(path, code);
@@ -67,7 +69,7 @@ base::Result<std::string> read_file(const fs::path& path) {
   if (!stream) {
     return unreadable("cannot be read: " + std::generic_category().message(errno));
   }
-  return read_stream(stream);
+  return read_stream(stream, ending_of(path.string()));
 }
 
 std::optional<base::Error> write_file(const fs::path& path,

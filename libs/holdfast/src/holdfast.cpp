@@ -9,6 +9,7 @@
 #include <chrono>
 #include <thread>
 
+#include "holdfast/file_ending.hpp"
 #include "holdfast/host/team.hpp"
 #include "holdfast/limit/robot.hpp"
 #include "holdfast/model/families.hpp"
@@ -55,9 +56,10 @@ base::Result<Structure> make_structure(io::Document document, std::string_view n
                    .warnings = std::move(doubts)};
 }
 
-base::Result<Structure> load_text(std::string_view text, std::string_view name, int thread_count,
-                                  const io::ReadOptions& options) {
-  auto read = io::read_document(text, options);
+namespace {
+
+base::Result<Structure> structure_of(base::Result<io::ReadDocument> read, std::string_view name,
+                                     int thread_count) {
   if (!read) {
     return read.error();
   }
@@ -83,13 +85,27 @@ base::Result<Structure> load_text(std::string_view text, std::string_view name, 
   return structure;
 }
 
-base::Result<Structure> load_file(const std::filesystem::path& path, int thread_count,
+}  // namespace
+
+base::Result<Structure> load_text(std::string_view text, std::string_view name, int thread_count,
                                   const io::ReadOptions& options) {
+  return structure_of(io::read_document(text, options), name, thread_count);
+}
+
+base::Result<io::ReadDocument> read_structure(const std::filesystem::path& path,
+                                              const io::ReadOptions& options) {
   const auto text = read_file(path);
   if (!text) {
     return text.error();
   }
-  auto loaded = load_text(text.value(), path.stem().string(), thread_count, options);
+  io::ReadOptions more = options;
+  more.ending = options.ending.empty() ? ending_of(path.string()) : options.ending;
+  return io::read_document(text.value(), more);
+}
+
+base::Result<Structure> load_file(const std::filesystem::path& path, int thread_count,
+                                  const io::ReadOptions& options) {
+  auto loaded = structure_of(read_structure(path, options), path.stem().string(), thread_count);
   if (!loaded) {
     return loaded;
   }

@@ -23,11 +23,7 @@ io::StepsEntry entry_of(const StepsFile& file, const StepsResult& result) {
 
 base::Result<StepsFile> load_steps(const std::filesystem::path& path,
                                    const io::ReadOptions& options) {
-  const auto text = read_file(path);
-  if (!text) {
-    return text.error();
-  }
-  auto read = io::read_document(text.value(), options);
+  auto read = read_structure(path, options);
   if (!read) {
     return read.error();
   }

@@ -4,7 +4,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "holdfast/io/binary_structure.hpp"
+#include "holdfast/io/foreign_format.hpp"
 #include "text_input.hpp"
 
 namespace holdfast::io {
@@ -52,7 +56,32 @@ base::Result<Format> detect_format(std::string_view text) {
       ""};
 }
 
-base::Result<ReadDocument> read_document(std::string_view text, const ReadOptions& options) {
+namespace {
+
+/// Puts the robot on the layer that an option says.
+base::Result<ReadDocument> with_support(base::Result<ReadDocument> read,
+                                        const ReadOptions& options) {
+  if (!read || !options.support || read.value().document.modules.empty()) {
+    return read;
+  }
+  auto [document, warnings] = std::move(read).value();
+  if (!document.extension.has_floor) {
+    return base::bad_input("the structure has no floor, whose level an option asks for");
+  }
+  const auto lowest = std::ranges::min_element(
+      document.modules, {}, [](const ModuleEntry& module) { return module.cell.z; });
+  document.support_z = options.support->z.value_or(lowest->cell.z);
+  warnings.push_back(
+      fmt::format("the support level is set to z = {} by an option", document.support_z));
+  return ReadDocument{std::move(document), std::move(warnings)};
+}
+
+base::Result<ReadDocument> read_any(std::string_view text, const ReadOptions& options) {
+  const auto* const foreign =
+      text.starts_with(kBinaryMagic) ? nullptr : find_foreign_format(text, options.ending);
+  if (foreign != nullptr) {
+    return read_foreign(*foreign, text, options);
+  }
   const auto format = detect_format(text);
   if (!format) {
     return format.error();
@@ -66,6 +95,12 @@ base::Result<ReadDocument> read_document(std::string_view text, const ReadOption
       break;
   }
   return read_binary(text, options);
+}
+
+}  // namespace
+
+base::Result<ReadDocument> read_document(std::string_view text, const ReadOptions& options) {
+  return with_support(read_any(text, options), options);
 }
 
 }  // namespace holdfast::io

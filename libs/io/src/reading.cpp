@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "holdfast/io/goal_shape.hpp"
 #include "holdfast/io/lattice_names.hpp"
 #include "holdfast/model/robot_catalogue.hpp"
 #include "robot_defaults.hpp"
@@ -281,6 +282,9 @@ void Reading::warn_of_attributes() {
 void Reading::warn_of_targets() {
   const Where nowhere = [] { return std::string(); };
   for (const Element& target : document.targets) {
+    if (is_goal(target)) {
+      continue;
+    }
     const std::string* const format = find_attribute(target.attributes, "format");
     if (const auto meant = near_miss(format == nullptr ? "" : *format, kTargetFormats)) {
       fail(unknown_name("the target format " + excerpt(*format), *meant));

@@ -11,6 +11,7 @@
 #include "holdfast/io/near_miss.hpp"
 #include "holdfast/io/report.hpp"
 #include "numbers.hpp"
+#include "reading.hpp"
 #include "text_input.hpp"
 #include "vocabulary.hpp"
 
@@ -62,6 +63,19 @@ base::Result<Setting> find_setting(std::string_view text) {
         fmt::format("{}: expected a number of {} and more, found {}", key, kPositiveMin, *value));
   }
   return Setting{.key = std::string(key), .value = *value};
+}
+
+base::Result<SupportLevel> find_support_level(std::string_view text) {
+  if (text == "lowest") {
+    return SupportLevel{};
+  }
+  const auto z = parse_number<std::int32_t>(text);
+  if (!z || !kCoordinateRange.contains(*z)) {
+    return base::bad_input(
+        fmt::format("expected lowest or an integer from {} to {}, the z of a layer, found {}",
+                    kCoordinateRange.lowest, kCoordinateRange.highest, excerpt(text)));
+  }
+  return SupportLevel{*z};
 }
 
 std::optional<std::string> take_setting(const Setting& setting, Document& document) {

@@ -160,14 +160,19 @@ inline constexpr auto kRowAttributes =
     std::to_array<std::string_view>({"line", "plane", "values", "color", kOrientation, "isTarget"});
 inline constexpr auto kBoxAttributes =
     std::to_array<std::string_view>({"boxOrigin", "boxSize", "color", kOrientation});
+inline constexpr auto kSolidAttributes = std::to_array<std::string_view>(
+    {"content", "boundingBox", "offset", "color", kOrientation});
 inline constexpr auto kTargetFormats =
     std::to_array<std::string_view>({"grid", "csg", "relativeGrid", "surface"});
 
 inline constexpr auto kRootElements = std::to_array<std::string_view>(
     {kRootElement, "parameters", "world", "visuals", "vm", "capabilities", "scenario"});
+/// The element of meta modules, several modules each, that a program for VisibleSim expands.
+inline constexpr const char* kMetaModules = "MMBlockList";
 inline constexpr auto kWorldElements = std::to_array<std::string_view>(
     {"blockList", "targetList", kOwnElement, kObstacleListElement, "camera", "spotlight",
-     "customization", "capabilities", "targetGrid", "trash", "scenario"});
+     "customization", "capabilities", "targetGrid", "trash", "scenario", kMetaModules,
+     "MMTargetList"});
 inline constexpr auto kBlockListElements =
     std::to_array<std::string_view>({"block", "blocksLine", "blockBox", "csg", "mesh"});
 inline constexpr auto kTargetListElements = std::to_array<std::string_view>({"target"});

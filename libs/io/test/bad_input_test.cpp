@@ -118,7 +118,7 @@ TEST(BadInput, with_scenery_nested_beyond_what_both_formats_hold_is_refused) {
 TEST(BadInput, of_more_modules_than_allowed_is_refused_before_they_are_made) {
   expect_refusal({xml("<blockBox/>"), "line 3", "20000000"});
   // One cell, then 1000 x 1000 x 20.
-  expect_refusal({xml("<blockBox boxSize=\"0,0,0\"/>\n<blockBox boxSize=\"40000,40000,779\"/>"),
+  expect_refusal({xml("<blockBox boxSize=\"0,0,0\"/>\n<blockBox boxSize=\"1000,1000,20\"/>"),
                   "line 4", "20000000 cells here make more than the 20000000"});
 }
 
@@ -215,8 +215,9 @@ TEST(BadInput, of_lines_and_boxes_is_refused) {
        "line 1", "blockSize of <blockList> is '0,1,1'"});
   expect_refusal(
       {"<world gridSize=\"9,0,9\"><blockList/></world>", "line 1", "gridSize is '9,0,9'"});
-  expect_refusal(
-      {xml("<csg content=\"cube([1,1,1])\"/>"), "line 3", "<csg>", base::ErrorCode::kUnsupported});
+  expect_refusal({xml("<csg/>"), "line 3", "no attribute 'content'"});
+  expect_refusal({xml("<csg content=\"ball(1)\"/>"), "line 3", "found 'ball(1)' in content"});
+  expect_refusal({xml("<mesh/>"), "line 3", "<mesh>", base::ErrorCode::kUnsupported});
 }
 
 TEST(BadInput, of_parameters_is_refused) {

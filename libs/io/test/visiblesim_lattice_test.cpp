@@ -139,10 +139,10 @@ TEST(VisibleSimLattice, has_no_boxes_in_millimetres_but_for_cubes) {
   EXPECT_EQ(error.code, base::ErrorCode::kUnsupported);
 }
 
-TEST(VisibleSimLattice, has_no_bodies_that_would_add_modules) {
-  for (const char* body : {"<csg/>", "<mesh/>"}) {
-    EXPECT_EQ(refused(world("", body)).code, base::ErrorCode::kUnsupported);
-  }
+TEST(VisibleSimLattice, has_no_meshes_that_would_add_modules) {
+  EXPECT_EQ(refused(world("", "<mesh/>")).code, base::ErrorCode::kUnsupported);
+  EXPECT_EQ(refused(world("", "<csg content=\"sphere(2)\"/>"), {.lattice = base::kHexagonal}).code,
+            base::ErrorCode::kUnsupported);
 }
 
 /// Newer files have one root; their boxes count in cells, and boxSize is how many.

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "holdfast/base/result.hpp"
@@ -22,6 +23,9 @@ enum class FileFormat : std::uint8_t {
   kPvd,  ///< The list of a series of .vtu files.
   kHtml,
 };
+
+/// The ending of a path in small letters, with its dot; empty if it has none.
+std::string ending_of(std::string_view path);
 
 /// Whether a path ends so, in small letters or large ones: ".png".
 bool has_ending(std::string_view path, std::string_view ending);

@@ -22,6 +22,8 @@
 #include "holdfast/io/binary_structure.hpp"    // IWYU pragma: export
 #include "holdfast/io/collapse.hpp"            // IWYU pragma: export
 #include "holdfast/io/document.hpp"            // IWYU pragma: export
+#include "holdfast/io/foreign_format.hpp"      // IWYU pragma: export
+#include "holdfast/io/goal_shape.hpp"          // IWYU pragma: export
 #include "holdfast/io/lattice_names.hpp"       // IWYU pragma: export
 #include "holdfast/io/near_miss.hpp"           // IWYU pragma: export
 #include "holdfast/io/picture.hpp"             // IWYU pragma: export
@@ -132,8 +134,9 @@ struct CheckResult {
 /// The library's version, "major.minor.patch".
 std::string_view version();
 
-/// Reads a whole file of text, or a binary structure; "-" is standard input. Errors: a folder, too
-/// large, not readable, a zero byte in a text, at which reading ends.
+/// Reads a whole file of text, or one of a format with zero bytes, such as a binary structure; "-"
+/// is standard input. Errors: a folder, too large, not readable, a zero byte in a text, at which
+/// reading ends.
 base::Result<std::string> read_file(const std::filesystem::path& path);
 
 /// Writes a whole file or nothing, as host::OutputFile does; "-" is standard output.
@@ -143,8 +146,13 @@ std::optional<base::Error> write_file(const std::filesystem::path& path, std::st
 std::optional<base::Error> write_file(const std::filesystem::path& path,
                                       const std::function<void(std::ostream&)>& write);
 
-/// Reads VisibleSim XML, holdfast JSON or a binary structure and builds the robot with the first
-/// planned step. 0 threads: all cores. The options say what a file leaves open.
+/// Reads a structure from a file, in any format that io::read_document() reads; the ending of the
+/// file's name counts where the options have none.
+base::Result<io::ReadDocument> read_structure(const std::filesystem::path& path,
+                                              const io::ReadOptions& options = {});
+
+/// Reads a structure in any format that io::read_document() reads and builds the robot with the
+/// first planned step. 0 threads: all cores. The options say what a file leaves open.
 base::Result<Structure> load_text(std::string_view text, std::string_view name = {},
                                   int thread_count = 0, const io::ReadOptions& options = {});
 base::Result<Structure> load_file(const std::filesystem::path& path, int thread_count = 0,

@@ -29,7 +29,7 @@ struct StepsFile {
   io::ReportOrigin origin = {};  ///< What its reports say of where it is from.
 };
 
-/// Reads VisibleSim XML, holdfast JSON or binary. Errors: those of read_document(); there is no
+/// Reads a structure with steps. Errors: those of read_structure(); there is no
 /// step.
 base::Result<StepsFile> load_steps(const std::filesystem::path& path,
                                    const io::ReadOptions& options = {});

@@ -9,6 +9,7 @@
 
 #include "holdfast/host/interruption.hpp"
 #include "holdfast/io/document.hpp"
+#include "holdfast/io/goal_shape.hpp"
 #include "holdfast/io/lattice_names.hpp"
 #include "json/json_connectors.hpp"
 #include "json/json_extension.hpp"
@@ -37,6 +38,7 @@ class JsonReader {
   void take_old_obstacles(std::vector<Element>& list, const JsonPlace& place);
   std::vector<Element> scenery(const Json& value, const JsonPlace& place);
   std::vector<Element> targets(const Json& value, const JsonPlace& place);
+  void expect_goal_shapes();
 
   template <class Entry>
   std::vector<Entry> entries(const Json& value, const JsonPlace& place, std::size_t step);
@@ -76,6 +78,7 @@ base::Result<ReadDocument> JsonReader::read(const Json& root, const ReadOptions&
   std::vector<Step>& steps = reading_.document.steps;
   steps.push_back(std::move(planned_));
   std::ranges::move(later_steps_, std::back_inserter(steps));
+  expect_goal_shapes();
   return std::move(reading_).finish();
 }
 
@@ -303,13 +306,38 @@ std::vector<Element> JsonReader::targets(const Json& value, const JsonPlace& pla
   for (Element& element : list) {
     spell_as_known(element.attributes, kTargetAttributes, place);
     const std::string* const format = find_attribute(element.attributes, "format");
-    if (element.name != "target" || (format != nullptr && *format == "grid")) {
-      reading_.fail(place,
-                    "expected elements \"target\"; steps of format \"grid\" belong in "
-                    "\"planned\" and \"later_steps\"");
+    if (element.name != "target") {
+      reading_.fail(place, "expected elements \"target\"");
+    } else if (format != nullptr && *format == "grid") {
+      const auto cells = goal_cells(element);
+      if (!cells) {
+        reading_.fail(place, cells.error().message);
+        break;
+      }
+      element = make_goal(cells.value());
     }
   }
+  std::ranges::stable_partition(list, [](const Element& element) { return !is_goal(element); });
   return list;
+}
+
+/// Refuses targets of the format grid that are steps, which have keys of their own.
+void JsonReader::expect_goal_shapes() {
+  const Document& document = reading_.document;
+  const auto first = std::ranges::find_if(document.targets, is_goal);
+  if (reading_.has_failed() || first == document.targets.end()) {
+    return;
+  }
+  const bool has_steps =
+      std::ranges::any_of(document.steps, [](const Step& step) { return !step.empty(); });
+  const bool has_empty = std::ranges::any_of(
+      first, document.targets.end(), [](const Element& goal) { return goal.children.empty(); });
+  if (has_steps || has_empty || !is_goal_shape(document.modules, goal_cells(*first).value())) {
+    reading_.fail({base::ErrorCode::kBadInput,
+                   "targets of the format \"grid\" are shapes to reach, which overlap the modules; "
+                   "steps belong in \"planned\" and \"later_steps\"",
+                   "/visiblesim/targets"});
+  }
 }
 
 /// Reads a list of modules; `step` is that of OwnParameters.

@@ -239,18 +239,35 @@ bool is_connected(const Document& document, const base::Lattice& lattice) {
   return model::Robot::create(alone).has_value();
 }
 
+/// Whether a document's modules all hang above the floor, and nothing else could hold them.
+bool stands_higher(const Document& document) {
+  return document.extension.has_floor && document.extension.obstacles.empty() &&
+         std::ranges::all_of(document.modules, [&](const ModuleEntry& module) {
+           return !module.is_fixed && module.cell.z > document.support_z;
+         });
+}
+
 }  // namespace
 
 base::Error with_other_lattice(base::Error error, const Document& document) {
-  if (document.modules.empty() || is_connected(document, document.extension.lattice)) {
+  if (document.modules.empty()) {
+    return error;
+  }
+  if (is_connected(document, document.extension.lattice)) {
+    if (stands_higher(document)) {
+      error.message += "; --support-z lowest takes its layer";
+    }
     return error;
   }
   const auto other = std::ranges::find_if(kNamedLattices, [&](const NamedLattice& row) {
     return row.lattice != document.extension.lattice && is_connected(document, row.lattice);
   });
   if (other != kNamedLattices.end()) {
-    error.message += fmt::format("; the lattice is {}, in {} it is connected",
-                                 lattice_name(document.extension.lattice), other->name);
+    const auto* const modules =
+        std::ranges::find(kSimulatedModules, other->lattice, &SimulatedModules::lattice);
+    error.message +=
+        fmt::format("; the lattice is {}, in {} it is connected: --lattice {}",
+                    lattice_name(document.extension.lattice), other->name, modules->name);
   }
   return error;
 }

@@ -7,9 +7,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <set>
 
 #include "text_input.hpp"
+#include "visiblesim/csg.hpp"
 #include "vocabulary.hpp"
 
 namespace holdfast::io {
@@ -166,7 +169,8 @@ struct Box {
   }
 };
 
-/// VisibleSim counts boxes in mm up to 2022, in cells since, when files came to have the root <vs>.
+/// VisibleSim counts boxes in mm up to 2022, in cells since, when files came to have the root <vs>;
+/// but it reads others still.
 bool counts_in_cells(const pugi::xml_node& box) {
   return box.parent().parent().parent().name() == std::string_view(kRootElement);
 }
@@ -184,11 +188,12 @@ struct BoxText {
   Lengths size;  ///< Infinite where the box reaches the end of the grid.
 };
 
+/// The loops of VisibleSim end before the last layer of the grid.
 BoxRanges ranges_in_cells(const BoxText& box, const std::array<std::int32_t, 3>& grid) {
   BoxRanges ranges;
   for (std::size_t i = 0; i < 3; ++i) {
     const double end = std::ceil(box.origin[i] + box.size[i]) - 1;
-    ranges.axes[i] = Box{box.origin[i], end, 1}.cells(grid[i]);
+    ranges.axes[i] = Box{box.origin[i], end, 1}.cells(grid[i] - 1);
   }
   return ranges;
 }
@@ -211,14 +216,35 @@ bool is_within(const BoxText& box, const std::array<std::int32_t, 3>& grid) {
   return is;
 }
 
-/// Reads a box outside <vs> in mm, unless cells may be meant as well and make other modules.
-BoxRanges read_mm_ranges(XmlReading& reading, const pugi::xml_node& box, const BoxText& text,
-                         const std::array<std::int32_t, 3>& grid) {
+/// Reads a box in cells, and notes what VisibleSim leaves out of it.
+BoxRanges read_cell_ranges(XmlReading& reading, const pugi::xml_node& box, const BoxText& text,
+                           const std::array<std::int32_t, 3>& grid) {
+  BoxRanges ranges = ranges_in_cells(text, grid);
+  const BoxRanges whole = ranges_in_cells(text, {grid[0] + 1, grid[1] + 1, grid[2] + 1});
+  if (whole.count() != ranges.count()) {
+    reading.warn_at(box, fmt::format("a <blockBox> reaches the last layer of the grid, which "
+                                     "VisibleSim leaves out, and so it is here: {} modules of {}",
+                                     ranges.count(), whole.count()));
+  }
+  return ranges;
+}
+
+/// Reads a box outside <vs>: in cells if it is one of the grid then, as VisibleSim reads it today,
+/// with a note where it would differ in mm, in which older versions count; else in mm.
+BoxRanges read_plain_ranges(XmlReading& reading, const pugi::xml_node& box, const BoxText& text,
+                            const std::array<std::int32_t, 3>& grid) {
   const Lengths pitch = read_lengths(reading, box.parent(), "blockSize", kBlockSize);
-  if (reading.document.extension.lattice != base::kCubic) {
-    reading.fail(box, "<blockBox> in mm is for cubes only: write its modules as <block>",
-                 base::ErrorCode::kUnsupported);
-    return {};
+  const bool may_be_mm =
+      reading.document.extension.lattice == base::kCubic && std::ranges::min(pitch) > 0;
+  if (is_within(text, grid)) {
+    const BoxRanges ranges = read_cell_ranges(reading, box, text, grid);
+    const BoxRanges in_mm = may_be_mm ? ranges_in_mm(text, pitch, grid) : ranges;
+    if (in_mm.axes != ranges.axes && in_mm.count() + ranges.count() > 0) {
+      reading.warn_at(box, fmt::format("<blockBox> counts in cells, as VisibleSim does since 2022: "
+                                       "{} modules; in mm, as it counted before, it would be {}",
+                                       ranges.count(), in_mm.count()));
+    }
+    return ranges;
   }
   if (std::ranges::min(pitch) <= 0) {
     reading.fail(box.parent(), fmt::format("blockSize of <blockList> is '{},{},{}', expected "
@@ -226,33 +252,12 @@ BoxRanges read_mm_ranges(XmlReading& reading, const pugi::xml_node& box, const B
                                            pitch[0], pitch[1], pitch[2]));
     return {};
   }
-  const BoxRanges ranges = ranges_in_mm(text, pitch, grid);
-  const BoxRanges counted = ranges_in_cells(text, grid);
-  if (is_within(text, grid) && counted.axes != ranges.axes) {
-    reading.fail(box,
-                 fmt::format("<blockBox> is {} modules in mm, as VisibleSim counts up to 2022, "
-                             "but {} in cells, as it counts since: put the file within <vs> "
-                             "to count cells, or write the modules as <block>",
-                             ranges.count(), counted.count()));
+  if (!may_be_mm) {
+    reading.fail(box, "<blockBox> in mm is for cubes only: write its modules as <block>",
+                 base::ErrorCode::kUnsupported);
+    return {};
   }
-  return ranges;
-}
-
-/// Reads a box within <vs>. The loops of VisibleSim end before the last layer of the grid.
-BoxRanges read_cell_ranges(XmlReading& reading, const pugi::xml_node& box, const BoxText& text,
-                           const std::array<std::int32_t, 3>& grid) {
-  const BoxRanges ranges = ranges_in_cells(text, grid);
-  std::size_t count_there = 1;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const IndexRange& axis = ranges.axes[i];
-    count_there *= axis.count() - (axis.count() > 0 && axis.last == grid[i] - 1 ? 1 : 0);
-  }
-  if (count_there != ranges.count()) {
-    reading.warn_at(box, fmt::format("a <blockBox> reaches the last layer of the grid, which "
-                                     "VisibleSim leaves out: {} modules here, {} there",
-                                     ranges.count(), count_there));
-  }
-  return ranges;
+  return ranges_in_mm(text, pitch, grid);
 }
 
 BoxRanges read_box_ranges(XmlReading& reading, const pugi::xml_node& box) {
@@ -266,7 +271,7 @@ BoxRanges read_box_ranges(XmlReading& reading, const pugi::xml_node& box) {
   const std::array<std::int32_t, 3> grid = {reading.grid()->x, reading.grid()->y,
                                             reading.grid()->z};
   return counts_in_cells(box) ? read_cell_ranges(reading, box, text, grid)
-                              : read_mm_ranges(reading, box, text, grid);
+                              : read_plain_ranges(reading, box, text, grid);
 }
 
 void read_box(XmlReading& reading, const pugi::xml_node& box) {
@@ -295,6 +300,108 @@ void read_box(XmlReading& reading, const pugi::xml_node& box) {
   }
 }
 
+/// More points of a solid than this, times its parts, take too long.
+constexpr double kSolidWorkMax = 2e8;
+
+/// How VisibleSim lays a solid over the grid: the centre of cell (0, 0, 0), and the cells that may
+/// be in it.
+struct SolidGrid {
+  Solid::Point origin;
+  base::Cell low;
+  base::Cell high;
+
+  double count() const {
+    return std::max(0.0, high.x - low.x + 1.0) * std::max(0.0, high.y - low.y + 1.0) *
+           std::max(0.0, high.z - low.z + 1.0);
+  }
+};
+
+SolidGrid lay(XmlReading& reading, const pugi::xml_node& node, const Solid& solid) {
+  const bool is_centred = reading.document.extension.lattice == base::kFaceCentred;
+  const double half = is_centred ? 0.5 : 0;
+  const double layer = is_centred ? std::sqrt(0.5) : 1;
+  SolidGrid grid{.origin = {half, half, half * layer}, .low = {}, .high = {}};
+  const bool is_from_corner = node.attribute("boundingBox").as_bool(true);
+  const double back = node.attribute("offset").as_bool(true) ? 1 : 0;
+  const Solid::Box box = solid.bounds();
+  const Solid::Point step = {1, 1, layer};
+  const std::array<std::int32_t, 3> size = {reading.grid()->x, reading.grid()->y,
+                                            reading.grid()->z};
+  std::array<std::int32_t, 3> low{};
+  std::array<std::int32_t, 3> high{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    grid.origin[i] += (is_from_corner ? solid.filled_from()[i] : 0) - back;
+    // One more on either side: layers of a face-centred lattice are staggered.
+    low[i] = static_cast<std::int32_t>(
+        std::clamp(std::floor((box.low[i] - grid.origin[i]) / step[i]) - 1, 0.0, size[i] - 0.0));
+    high[i] = static_cast<std::int32_t>(
+        std::clamp(std::ceil((box.high[i] - grid.origin[i]) / step[i]) + 1, -1.0, size[i] - 1.0));
+  }
+  grid.low = {low[0], low[1], low[2]};
+  grid.high = {high[0], high[1], high[2]};
+  return grid;
+}
+
+/// Adds the modules of a solid whose centres lie in it, but where there is one already.
+void fill(XmlReading& reading, const pugi::xml_node& node, const Solid& solid,
+          const SolidGrid& grid) {
+  std::vector<ModuleEntry>& modules = reading.document.modules;
+  std::set<base::Cell> taken;
+  std::ranges::transform(modules, std::inserter(taken, taken.end()), &ModuleEntry::cell);
+  const std::optional<Color> color = reading.color(node);
+  const Attributes orientation = read_orientation(node);
+  const std::size_t before = modules.size();
+  for (std::int32_t z = grid.low.z; z <= grid.high.z; ++z) {
+    for (std::int32_t y = grid.low.y; y <= grid.high.y; ++y) {
+      for (std::int32_t x = grid.low.x; x <= grid.high.x; ++x) {
+        const base::Cell cell = {x, y, z};
+        const auto place = base::node_place(reading.document.extension.lattice, cell);
+        if (solid.contains({place[0] + grid.origin[0], place[1] + grid.origin[1],
+                            place[2] + grid.origin[2]}) &&
+            !taken.contains(cell)) {
+          modules.push_back({cell, false, color, orientation});
+        }
+      }
+    }
+  }
+  if (modules.size() == before) {
+    reading.warn_at(node, "a <csg> holds no cell");
+  }
+  reading.take_room(modules.size() - before, [&] { return reading.line(node); });
+}
+
+/// Reads <csg>, a solid whose attribute `content` says what it is.
+void read_csg(XmlReading& reading, const pugi::xml_node& node) {
+  reading.expect_no_content(node);
+  reading.expect_attributes(node, kSolidAttributes);
+  const char* const content = reading.required(node, "content");
+  if (content == nullptr) {
+    return;
+  }
+  if (!reading.grid()) {
+    reading.fail(node, "<csg> needs the attribute 'gridSize' of <world>, which is missing");
+    return;
+  }
+  const base::Lattice& lattice = reading.document.extension.lattice;
+  if (lattice != base::kCubic && lattice != base::kFaceCentred) {
+    reading.fail(node, "<csg> is for cubes and catoms3D only: write its modules as <block>",
+                 base::ErrorCode::kUnsupported);
+    return;
+  }
+  const auto solid = Solid::parse(content);
+  if (!solid) {
+    reading.fail(node, solid.error().message);
+    return;
+  }
+  const SolidGrid grid = lay(reading, node, solid.value());
+  if (grid.count() * static_cast<double>(solid.value().node_count()) > kSolidWorkMax) {
+    reading.fail(node, fmt::format("<csg> has {} parts over {} cells, more than can be filled",
+                                   solid.value().node_count(), grid.count()));
+    return;
+  }
+  fill(reading, node, solid.value(), grid);
+}
+
 }  // namespace
 
 void read_block_list(XmlReading& reading, const pugi::xml_node& list) {
@@ -308,16 +415,23 @@ void read_block_list(XmlReading& reading, const pugi::xml_node& list) {
       read_row(reading, child, plane, modules);
     } else if (name == "blockBox") {
       read_box(reading, child);
-    } else if (name == "csg" || name == "mesh") {
-      reading.fail(
-          child,
-          fmt::format("<{}> in <blockList> is not supported: write its modules as <block>", name),
-          base::ErrorCode::kUnsupported);
-    } else {
+    } else if (name == "mesh") {
+      reading.fail(child,
+                   "<mesh> in <blockList> is not supported: fill the mesh with --pitch, or write "
+                   "its modules as <block>",
+                   base::ErrorCode::kUnsupported);
+    } else if (name != "csg") {
       reading.warn_of_unknown_child(child, kBlockListElements);
     }
     if (reading.has_failed()) {
       return;
+    }
+  }
+  // VisibleSim reads solids last, and the first one only: they leave out cells that are taken.
+  if (const pugi::xml_node solid = list.child("csg")) {
+    read_csg(reading, solid);
+    if (const pugi::xml_node second = solid.next_sibling("csg")) {
+      reading.warn_at(second, "a further <csg> is ignored, as VisibleSim reads the first only");
     }
   }
 }

@@ -8,10 +8,12 @@
 #include <vector>
 
 #include "holdfast/io/document.hpp"
+#include "holdfast/io/goal_shape.hpp"
 #include "holdfast/io/lattice_names.hpp"
 #include "json/json_extension.hpp"
 #include "text_input.hpp"
 #include "visiblesim/visiblesim_cells.hpp"
+#include "visiblesim/xml_encoding.hpp"
 #include "visiblesim/xml_reading.hpp"
 #include "visiblesim/xml_spelling.hpp"
 #include "vocabulary.hpp"
@@ -119,10 +121,38 @@ void read_targets(XmlReading& reading, const pugi::xml_node& list) {
   }
 }
 
+/// Takes targets that overlap the modules for what they are: shapes to reach.
+void take_goal_shapes(XmlReading& reading, const pugi::xml_node& list) {
+  Document& document = reading.document;
+  const auto first = std::ranges::find_if(document.steps, [](const Step& s) { return !s.empty(); });
+  if (reading.has_failed() || first == document.steps.end() ||
+      !is_goal_shape(document.modules, *first)) {
+    return;
+  }
+  reading.warn(fmt::format("the target is taken for a shape to reach, as it overlaps the modules: "
+                           "its {} cells are not attached, the {} modules are judged as they are; "
+                           "holdfast move takes them there",
+                           first->size(), document.modules.size()),
+               [&] { return reading.line(list); });
+  for (const Step& step : document.steps) {
+    if (!step.empty()) {
+      document.targets.push_back(make_goal(step));
+    }
+  }
+  document.steps.clear();
+  std::erase_if(document.extension.own, [](const OwnParameters& own) { return own.step > 0; });
+}
+
 void read_scenery(XmlReading& reading, const pugi::xml_node& world) {
   for (const pugi::xml_node& child : world.children()) {
     if (child.type() != pugi::node_element) {
       reading.warn_of_unknown_child(child, kWorldElements);
+    } else if (child.name() == std::string_view(kMetaModules) && child.first_child()) {
+      reading.fail(child,
+                   fmt::format("<{}> lists meta modules, whose modules a program for VisibleSim "
+                               "places: let it run, and read the configuration that it exports",
+                               kMetaModules),
+                   base::ErrorCode::kUnsupported);
     } else if (!is_structural_element(child.name())) {
       reading.document.scenery.push_back(reading.element(child));
     }
@@ -187,6 +217,7 @@ void read_world(XmlReading& reading, const pugi::xml_node& world, const ReadOpti
   read_targets(reading, targets);
   read_scenery(reading, world);
   read_own_element(reading, own);
+  take_goal_shapes(reading, targets);
   if (own.attribute("computed").value() == std::string_view(kGridSize)) {
     std::erase_if(document.world, [](const auto& entry) { return entry.first == kGridSize; });
   }
@@ -254,7 +285,11 @@ void read_roots(XmlReading& reading, const pugi::xml_node& tree, const ReadOptio
 }  // namespace
 
 base::Result<ReadDocument> read_visiblesim(std::string_view text, const ReadOptions& options) {
-  text = without_bom(text);
+  const auto recoded = recode(text);
+  if (!recoded) {
+    return recoded.error();
+  }
+  text = without_bom(recoded.value() ? std::string_view(*recoded.value()) : text);
   if (auto fault = find_input_fault(text)) {
     return *std::move(fault);
   }

@@ -7,6 +7,7 @@
 #include <pugixml.hpp>
 
 #include "holdfast/io/document.hpp"
+#include "holdfast/io/goal_shape.hpp"
 #include "holdfast/io/lattice_names.hpp"
 #include "json/json_text.hpp"
 #include "reading.hpp"
@@ -217,7 +218,16 @@ void add_targets(pugi::xml_node world, const Document& document, const base::Cel
     }
   }
   for (const Element& target : document.targets) {
-    add_element(list, target);
+    const auto cells = is_goal(target) ? goal_cells(target) : base::Result<Step>(Step{});
+    if (!is_goal(target) || !cells) {
+      add_element(list, target);
+      continue;
+    }
+    Step there = cells.value();
+    for (PlannedEntry& entry : there) {
+      entry.cell = moved(entry.cell, shift);
+    }
+    add_element(list, make_goal(there));
   }
   if (!list.first_child()) {
     pugi::xml_node nothing = append(list, "target");

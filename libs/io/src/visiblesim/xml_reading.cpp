@@ -164,6 +164,27 @@ class ShapeCheck {
   std::size_t unread_at_ = std::string_view::npos;  ///< The first entity that is not read.
 };
 
+/// A position as older versions write it, or as programs print it: in parentheses, with decimals,
+/// of which VisibleSim takes the whole part, or without z, which is 0 then.
+std::optional<std::array<std::int32_t, 3>> whole_parts(std::string_view text) {
+  text = trimmed(text);
+  if (text.starts_with('(') && text.ends_with(')')) {
+    text = text.substr(1, text.size() - 2);
+  }
+  auto numbers = parse_triple<double>(text);
+  if (!numbers) {
+    numbers = parse_triple<double>(std::string(text) + ",0");
+  }
+  std::array<std::int32_t, 3> whole{};
+  for (std::size_t i = 0; numbers && i < 3; ++i) {
+    if (!kCoordinateRange.contains((*numbers)[i])) {
+      return std::nullopt;
+    }
+    whole[i] = static_cast<std::int32_t>((*numbers)[i]);
+  }
+  return numbers ? std::optional(whole) : std::nullopt;
+}
+
 bool is_text(const pugi::xml_node& node) {
   return node.type() == pugi::node_pcdata || node.type() == pugi::node_cdata;
 }
@@ -309,7 +330,22 @@ std::array<std::int32_t, 3> XmlReading::triple(const pugi::xml_node& node, const
 }
 
 base::Cell XmlReading::cell(const pugi::xml_node& node) {
-  const auto [x, y, z] = triple(node, "position", kCoordinateRange);
+  const char* const text = required(node, "position");
+  if (text == nullptr) {
+    return {};
+  }
+  const auto exact = parse_triple<std::int32_t>(text);
+  const auto loose = exact ? std::nullopt : whole_parts(text);
+  const auto position = exact ? exact : loose;
+  if (!position || !std::ranges::all_of(
+                       *position, [](std::int32_t n) { return kCoordinateRange.contains(n); })) {
+    triple(node, "position", kCoordinateRange);  // Says what is wrong.
+    return {};
+  }
+  const auto [x, y, z] = *position;
+  if (loose) {
+    warn_at(node, fmt::format("a position is {}, taken to be {},{},{}", excerpt(text), x, y, z));
+  }
   return {x, y, z};
 }
 

@@ -31,6 +31,7 @@ const std::vector<Content>& contents() {
                                             {"block", kBlockAttributes, {}},
                                             {"blocksLine", kRowAttributes, {}},
                                             {"blockBox", kBoxAttributes, {}},
+                                            {"csg", kSolidAttributes, {}},
                                             {"targetList", {}, kTargetListElements},
                                             {"target", kTargetAttributes, kTargetElements},
                                             {"cell", kCellAttributes, {}},

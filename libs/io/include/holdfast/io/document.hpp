@@ -94,7 +94,8 @@ inline constexpr std::size_t kFileBytesMax = std::size_t{1} << 30U;
 inline constexpr int kNestingMax = 64;
 
 /// The format by its first letters, HOLDFAST for a binary structure, or by the first character that
-/// is not white space: '<' for XML, '{' or '[' for JSON; an error for anything else.
+/// is not white space: '<' for XML, '{' or '[' for JSON; an error for anything else, of which
+/// foreign_formats() may still be one.
 base::Result<Format> detect_format(std::string_view text);
 
 /// A number of the material that replaces what a file or its robot says.
@@ -109,6 +110,16 @@ struct Setting {
 /// that is probably meant; no number, or one that the key does not allow.
 base::Result<Setting> find_setting(std::string_view text);
 
+/// The layer whose modules rest on the ground, by its z.
+struct SupportLevel {
+  std::optional<std::int32_t> z;  ///< None: that of the lowest existing module.
+
+  friend bool operator==(const SupportLevel&, const SupportLevel&) = default;
+};
+
+/// Reads "lowest" or the z of a layer. Error: it is neither.
+base::Result<SupportLevel> find_support_level(std::string_view text);
+
 /// The values that hold where a file says nothing, and are an error where it says otherwise; and
 /// the limits of what a file may hold.
 struct ReadOptions {
@@ -118,6 +129,13 @@ struct ReadOptions {
   /// error, as what it says would be lost, but for one that begins with `x-`, which is for others.
   bool allow_unknown = false;
   std::vector<Setting> settings = {};  ///< The last one of a key counts. Warnings name them.
+  /// The support level that replaces the file's, with a warning; heeded by read_document().
+  std::optional<SupportLevel> support = {};
+  /// The ending of the file's name, in small letters with its dot, such as ".csv"; empty where it
+  /// is not known. It decides what the first letters of a foreign file leave open.
+  std::string ending = {};
+  /// The edge of a cell in the unit of a mesh that is filled with modules; a mesh needs it.
+  std::optional<double> mesh_pitch = {};
 };
 
 /// Takes a number of the material that somebody states.
@@ -131,7 +149,8 @@ bool is_said(const model::MaterialParameter& parameter, const model::Material& d
 /// Whether somebody says what the elastic modulus is.
 bool is_modulus_stated(const Document& document);
 
-/// Reads any of the formats. Error::where is "line 12" or a JSON pointer such as "/modules/3".
+/// Reads any of the formats, those of foreign_formats() too. Error::where is "line 12" or a JSON
+/// pointer such as "/modules/3".
 base::Result<ReadDocument> read_document(std::string_view text, const ReadOptions& options = {});
 
 base::Result<ReadDocument> read_visiblesim(std::string_view text, const ReadOptions& options = {});
@@ -194,7 +213,8 @@ std::string step_list(const Document& document);
 base::Result<Sequence> make_sequence(const Document& document);
 
 /// The error of a robot that could not be made of the document, with the lattice in which its
-/// modules are connected where they are not in the one taken: files for VisibleSim do not say it.
+/// modules are connected where they are not in the one taken, and with the layer on which they
+/// could stand where nothing holds them: files for VisibleSim say neither.
 base::Error with_other_lattice(base::Error error, const Document& document);
 
 /// Makes the robot with the first step; threads are those of model::Robot::create. Errors: those of
