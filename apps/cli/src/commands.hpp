@@ -16,6 +16,7 @@
 
 #include "help.hpp"
 #include "holdfast/exit_code.hpp"
+#include "holdfast/file_ending.hpp"
 #include "holdfast/holdfast.hpp"
 #include "holdfast/trial.hpp"
 
@@ -158,6 +159,12 @@ inline void add_connections(CLI::App& command, std::string& choice) {
         return io::find_connection_choice(text) ? "" : "expected all, broken or a count";
       })
       ->capture_default_str();
+}
+
+/// A structure with steps as the ending of its file asks: VisibleSim XML or holdfast JSON.
+inline std::string plan_text(const io::Document& document, const std::string& path) {
+  return has_ending(path, ".xml") ? io::write_visiblesim(io::with_targets(document))
+                                  : io::write_json(document);
 }
 
 /// Writes a text, or what a function writes into a stream, to a file; "-" is standard output.
