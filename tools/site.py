@@ -18,7 +18,7 @@ import sys
 
 SECTIONS = [
     ('Tutorials', 'From nothing to an answer, step by step.',
-     ['first_robot', 'first_plan', 'python_examples', 'tour', 'porting']),
+     ['first_robot', 'first_plan', 'bring_your_file', 'python_examples', 'tour', 'porting']),
     ('How to', 'One task each.',
      ['install', 'python', 'page', 'visiblesim', 'firmware', 'cluster']),
     ('Reference', 'What there is, complete.',

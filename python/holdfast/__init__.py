@@ -31,5 +31,5 @@ __version__ = _core.version()
 
 __all__ = ['Error', 'Moves', 'Order', 'Outcome', 'PageNotFound', 'Places', 'Remedies', 'Report',
            'Robot', 'Run', 'Stage', 'Steps', 'Timings', 'Verdict', 'animate', 'check_many',
-           'families', 'foreign_formats', 'generate', 'load', 'move', 'next_places', 'order', 'plot_order',
-           'plot_steps', 'robots', 'steps', 'table']
+           'families', 'foreign_formats', 'generate', 'load', 'move', 'next_places', 'order',
+           'plot_order', 'plot_steps', 'robots', 'steps', 'table']

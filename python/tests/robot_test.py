@@ -312,3 +312,43 @@ def test_unknown_keys_are_errors_in_texts_files_and_arguments(tmp_path):
         Robot([[0, 0, 0]], material={'weight': 1})
     grams = Robot([[0, 0, 0]], material={'mass_kg': 61.06})
     assert [warning[:16] for warning in grams.warnings] == ['density 954 t/m3']
+
+
+def test_lists_of_cells_and_meshes_are_robots(tmp_path):
+    path = tmp_path / 'cells.csv'
+    path.write_text('x,y,z\n0,0,2\n0,0,3\n')
+    robot = holdfast.load(path)
+    assert robot.cells.tolist() == [[0, 0, 2], [0, 0, 3]]
+    assert robot.check().verdict.name == 'SAFE'
+    assert any('read as list of cells' in warning for warning in robot.warnings)
+    with pytest.raises(holdfast.Error, match='nothing holds the robot'):
+        holdfast.load(path, supports=0)
+    for given in ('lowest', 2):
+        assert len(holdfast.load(path, supports=given)) == 2
+    with pytest.raises(holdfast.Error, match='expected lowest or an integer'):
+        holdfast.load(path, supports='floor')
+    mesh = tmp_path / 'mesh.obj'
+    corners = [(x, y, z) for x in (0, 40) for y in (0, 40) for z in (0, 80)]
+    mesh.write_text(''.join(f'v {x} {y} {z}\n' for x, y, z in corners) + 'f 1 2 4 3\nf 5 6 8 7\n'
+                    'f 1 2 6 5\nf 3 4 8 7\nf 1 3 7 5\nf 2 4 8 6\n')
+    assert holdfast.load(mesh, pitch=40).cells.tolist() == [[0, 0, 0], [0, 0, 1]]
+    with pytest.raises(holdfast.Error, match='a mesh needs the edge of a module'):
+        holdfast.load(mesh)
+
+
+def test_the_lowest_layer_may_stand():
+    voxels = np.zeros((3, 3, 5), dtype=bool)
+    voxels[1, 1, 2:] = True
+    with pytest.raises(holdfast.Error, match='nothing holds the robot'):
+        holdfast.Robot.from_voxels(voxels)
+    report = holdfast.Robot.from_voxels(voxels, supports='lowest').check()
+    assert report.verdict.name == 'SAFE'
+    with pytest.raises(holdfast.Error, match='supports: expected'):
+        holdfast.Robot([[0, 0, 0]], supports='ground')
+
+
+def test_foreign_formats_have_all_that_is_said_of_them():
+    rows = holdfast.foreign_formats()
+    assert {'.csv', '.vox', '.stl', '.obj', '.ldr'} <= {
+        ending for row in rows for ending in row['endings'].split()}
+    assert all(all(row.values()) for row in rows)

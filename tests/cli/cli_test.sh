@@ -619,6 +619,46 @@ for arguments in "check catoms_and_one.json" "steps catoms_and_one.json" "next c
   expect_line err 'not connected: .*; the lattice is cubic, in face-centred it is connected'
 done
 
+# A list of cells is a robot, to every command; its lowest layer stands, or the one that is said.
+printf 'x,y,z\n0,0,5\n0,0,6\n1,0,6\n' >list.csv
+for command in check next simulate order view; do
+  case $command in
+    simulate) expect_exit 0 simulate list.csv --link unit ;;
+    view) expect_exit 0 view list.csv --out list.html ;;
+    *) expect_exit 0 "$command" list.csv ;;
+  esac
+  expect_line err 'note: read as list of cells: 3 modules; not read: other columns'
+  expect_line err 'the lowest layer, z = 5, rests on it'
+done
+expect_exit 65 check list.csv --support-z 0
+expect_line err 'nothing holds the robot: .* z = 0 .*--support-z lowest'
+expect_exit 0 check list.csv --support-z lowest
+expect_line err 'the support level is set to z = 5 by an option'
+expect_exit 64 check list.csv --support-z floor
+expect_line err 'expected lowest or an integer'
+expect_exit 0 convert list.csv list.json
+expect_exit 0 check list.json
+expect_line out '^  modules +3 existing, 0 planned; 1 supported'
+expect_exit 65 check "$repository/examples/formats/block.stl"
+expect_line err 'a mesh needs the edge of a module in its own unit: --pitch'
+expect_exit 0 check "$repository/examples/formats/block.stl" --pitch 40
+expect_line out '^  modules +12 existing'
+expect_exit 0 help convert
+expect_line out 'MagicaVoxel \(\.vox\)'
+
+# A target that overlaps the robot is where it is to go.
+goal=$repository/examples/formats/goal_shape.xml
+expect_exit 0 check "$goal"
+expect_line err 'is taken for a shape to reach'
+expect_exit 0 move "$goal" -o moves.xml
+expect_line out '^FOUND +4 steps'
+expect_exit 0 steps moves.xml
+expect_exit 65 move "$safe"
+expect_line err 'the structure has no goal shape'
+expect_exit 0 order list.csv -o order.xml
+expect_line order.xml '<cell position='
+expect_exit 0 steps order.xml
+
 # A full disk and a closed output are errors of every command.
 for arguments in "check $safe" "check $safe --json -" "simulate $safe --link unit" \
   "simulate $safe --link unit --story -" "generate cube 3" "generate cube 30" "--help"; do

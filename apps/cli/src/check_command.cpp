@@ -404,7 +404,7 @@ Command add_check(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "check", "Say whether a structure holds with its planned modules attached");
   add_required(*command, "FILE", options->files,
-               "Structures: VisibleSim XML, holdfast JSON or binary; - is standard input");
+               "Structures in any format that holdfast convert lists; - is standard input");
   add_reading(*command, options->reading);
   add_output(*command, "--json", options->json,
              "Write the whole report as JSON; - is standard output");

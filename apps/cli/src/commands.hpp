@@ -18,6 +18,7 @@
 
 #include "help.hpp"
 #include "holdfast/exit_code.hpp"
+#include "holdfast/file_ending.hpp"
 #include "holdfast/holdfast.hpp"
 #include "holdfast/trial.hpp"
 
@@ -171,6 +172,12 @@ inline void note_idle_connections(const std::string& choice,
                "holdfast: note: --connections has no effect on the text; it chooses what the "
                "files of connections list, such as that of --json\n");
   }
+}
+
+/// A structure with steps as the ending of its file asks: VisibleSim XML or holdfast JSON.
+inline std::string plan_text(const io::Document& document, const std::string& path) {
+  return has_ending(path, ".xml") ? io::write_visiblesim(io::with_targets(document))
+                                  : io::write_json(document);
 }
 
 /// Writes a text, or what a function writes into a stream, to a file; "-" is standard output.

@@ -89,12 +89,23 @@ int run(const ConvertArguments& options) {
   return error ? fail(*error, options.to) : 0;
 }
 
+/// The formats of other programs, by their endings.
+std::string foreign_text() {
+  std::string list;
+  for (const io::ForeignFormat& format : io::foreign_formats()) {
+    list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", format.name, format.endings);
+  }
+  return fmt::format("All commands read, beside these three: {}. A note says what of it is lost. ",
+                     list);
+}
+
 }  // namespace
 
 Command add_convert(CLI::App& app) {
   auto options = std::make_shared<ConvertArguments>();
   CLI::App* command = app.add_subcommand(
-      "convert", "Convert a structure between VisibleSim XML, holdfast JSON and binary");
+      "convert",
+      "Convert a structure between VisibleSim XML, holdfast JSON and binary, or from others");
   add_required(*command, "FROM", options->from,
                "Structure to read, any format; - is standard input");
   add_required(*command, "TO", options->to,
@@ -104,8 +115,11 @@ Command add_convert(CLI::App& app) {
           [options] { return run(*options); },
           {.examples = {{"convert robot.xml robot.json", "from VisibleSim to holdfast JSON"},
                         {"convert robot.json robot.xml", "and back"},
-                        {"convert robot.json robot.holdfast", "small and quick to read"}},
-           .notes = "Modules, steps, parameters, obstacles, loads, colours and all of "
+                        {"convert robot.json robot.holdfast", "small and quick to read"},
+                        {"convert figure.stl figure.json --pitch 40",
+                         "fill a mesh with modules of 40 mm"}},
+           .notes = foreign_text() +
+                    "Modules, steps, parameters, obstacles, loads, colours and all of "
                     "VisibleSim's own attributes are kept; comments and the layout of the text "
                     "are not. A binary structure, .holdfast, has what check needs; a note says "
                     "what it leaves out.",

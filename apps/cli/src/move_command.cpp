@@ -34,7 +34,7 @@ struct MoveArguments {
 
   /// The files to be written, each with its option.
   Outputs outputs() const {
-    return {{"--output", steps, FileFormat::kHoldfastJson}, {"--json", json, FileFormat::kJson}};
+    return {{"--output", steps, FileFormat::kPlan}, {"--json", json, FileFormat::kJson}};
   }
 };
 
@@ -67,7 +67,7 @@ int show(const MoveArguments& options, const io::MoveReport& report) {
   const bool has_moves =
       report.plan.outcome == plan::MoveOutcome::kFound || !report.plan.steps.empty();
   if (!options.steps.empty() && has_moves &&
-      !write_or_complain(options.steps, io::write_json(io::move_steps(report)))) {
+      !write_or_complain(options.steps, plan_text(io::move_steps(report), options.steps))) {
     return kExitBadInput;
   }
   if (!has_moves) {
@@ -218,8 +218,8 @@ Command add_move(CLI::App& app) {
   add_ways(*command, *options);
   add_limits(*command, *options);
   add_output(*command, "-o,--output", options->steps,
-             "Write FROM with the moves as its steps; - is standard output. If the shape is "
-             "not found: those to the nearest one");
+             "Write FROM with the moves as its steps, JSON or VisibleSim XML as the ending says; "
+             "- is standard output. If the shape is not found: those to the nearest one");
   add_output(*command, "--json", options->json, "Write a JSON report; - is standard output");
   command
       ->add_option("--verify", options->verified,

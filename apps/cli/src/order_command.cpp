@@ -39,7 +39,7 @@ struct OrderArguments {
 
   /// The files to be written, each with its option.
   Outputs outputs() const {
-    return {{"--output", steps, FileFormat::kHoldfastJson},
+    return {{"--output", steps, FileFormat::kPlan},
             {"--json", json, FileFormat::kJson},
             {"--certificate", certificate, FileFormat::kJson}};
   }
@@ -123,7 +123,7 @@ int show(const OrderArguments& options, const io::OrderReport& report) {
     if (!steps) {
       return fail(steps.error(), options.target);
     }
-    if (!write_or_complain(options.steps, io::write_json(steps.value()))) {
+    if (!write_or_complain(options.steps, plan_text(steps.value(), options.steps))) {
       return kExitBadInput;
     }
   }
@@ -257,10 +257,12 @@ Command add_order(CLI::App& app) {
       ->type_name("START");
   add_ways(*command, *options);
   add_limits(*command, *options);
-  add_output(*command, "-o,--output", options->steps,
-             "Write the order as a structure with steps; - is standard output. If none is found: "
-             "as far as the search got",
-             "STEPS.json");
+  add_output(
+      *command, "-o,--output", options->steps,
+      "Write the order as a structure with steps, JSON or VisibleSim XML as the ending says; "
+      "- is standard output. If none is found: "
+      "as far as the search got",
+      "STEPS.json");
   add_output(*command, "--json", options->json, "Write a JSON report; - is standard output");
   add_output(*command, "--certificate", options->certificate,
              "Where there is no order, write what proves it; holdfast steps --verify replays "

@@ -26,6 +26,7 @@ const std::vector<Endings>& formats() {
       {FileFormat::kJson, "JSON", {".json"}},
       {FileFormat::kStructure, "holdfast JSON", {".json", ".xml", ".holdfast"}},
       {FileFormat::kHoldfastJson, "holdfast JSON", {".json"}},
+      {FileFormat::kPlan, "holdfast JSON or VisibleSim XML", {".json", ".xml"}},
       {FileFormat::kCsv, "CSV", {".csv"}},
       {FileFormat::kSvg, "SVG", {".svg"}},
       {FileFormat::kFigure, "SVG, PNG or PDF", {".svg", ".png", ".pdf"}},

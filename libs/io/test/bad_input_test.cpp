@@ -117,9 +117,9 @@ TEST(BadInput, with_scenery_nested_beyond_what_both_formats_hold_is_refused) {
 
 TEST(BadInput, of_more_modules_than_allowed_is_refused_before_they_are_made) {
   expect_refusal({xml("<blockBox/>"), "line 3", "20000000"});
-  // One cell, then 1000 x 1000 x 20.
-  expect_refusal({xml("<blockBox boxSize=\"0,0,0\"/>\n<blockBox boxSize=\"1000,1000,20\"/>"),
-                  "line 4", "20000000 cells here make more than the 20000000"});
+  // One cell, then 999 x 999 x 21, as VisibleSim leaves out the last layer of the grid.
+  expect_refusal({xml("<blockBox boxSize=\"0,0,0\"/>\n<blockBox boxSize=\"1000,1000,21\"/>"),
+                  "line 4", "20958021 cells here make more than the 20000000"});
 }
 
 TEST(BadInput, in_a_place_with_a_long_name_is_refused_with_the_end_of_it) {
@@ -192,8 +192,8 @@ TEST(BadInput, of_visiblesim_names_what_was_found_and_what_is_allowed) {
   bad_block("", "<block> has no attribute 'position'");
   bad_block("positon=\"1,2,3\" id=\"1\"",
             "<block> has no attribute 'position', found 'positon', 'id'");
-  for (const char* position : {"1,2", "1,2,3,4", "1,2,x", "1,2,3x", "1.5,2,3", "1,2,", "", "1;2;3",
-                               "1 2 3", "1,2,99999999999", "1,2,1000001", "1,2,0x10", "nan,0,0"}) {
+  for (const char* position : {"1", "1,2,3,4", "1,2,x", "1,2,3x", "1,2,", "", "1;2;3", "1 2 3",
+                               "1,2,99999999999", "1,2,1000001", "1,2,0x10", "nan,0,0"}) {
     bad_block("position=\"" + std::string(position) + "\"",
               "position of <block> is '" + std::string(position) +
                   "', expected three integers from -1000000 to 1000000, such as 1,2,3");
@@ -350,6 +350,22 @@ TEST(BadInput, that_visiblesim_could_not_hold_is_refused) {
   bad(R"("targets": [{"element": "target", "attributes": {"format": "grid"}}])", "targets");
   expect_refusal({json(R"("modules": [{"cell": [0,0,0], "attributes": {"position": "1,1,1"}}])"),
                   "/modules/0/attributes/position", "key of its own"});
+}
+
+/// Coordinates in millimetres make a robot of modules that are far apart.
+TEST(BadInput, that_counts_cells_in_millimetres_is_told_so) {
+  const auto message = [](std::string_view cells) {
+    const auto read = read_document(json(fmt::format(R"("modules": [{}])", cells)));
+    EXPECT_TRUE(read);
+    const auto robot = make_robot(read.value().document);
+    EXPECT_FALSE(robot);
+    return robot.error().message;
+  };
+  const std::string_view hint = "divide them by 40";
+  EXPECT_NE(message("[0,0,0], [40,0,0], [40,0,40]").find(hint), std::string::npos);
+  EXPECT_NE(message("[7,0,0], [47,0,0]").find(hint), std::string::npos);
+  EXPECT_EQ(message("[0,0,0], [40,0,0], [120,0,0]").find("divide"), std::string::npos);
+  EXPECT_EQ(message("[0,0,0], [40,0,0], [41,0,0]").find("divide"), std::string::npos);
 }
 
 TEST(BadInput, cut_off_or_damaged_anywhere_never_ends_in_more_than_a_message) {

@@ -207,8 +207,7 @@ const std::vector<Sample>& samples() {
       {"squares.json",
        "compacting-squares",
        {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 0, 1}, {1, 0, 2}}},
-      // Two bricks of 2 x 4 studs side by side, one over both, one of 2 x 2 on top, turned; the
-      // first brick's corner is the first cell.
+      // Two bricks of 2 x 4 studs side by side, one over both, one of 2 x 2 on top, turned.
       {"wall.ldr", "LDraw",
        [] {
          Cells cells;
@@ -279,11 +278,22 @@ TEST(ForeignFormat, has_a_sample_for_each_row_whose_cells_are_read) {
   }
 }
 
+/// docs/formats.md has the table that the program has.
+TEST(ForeignFormat, is_documented_in_the_words_of_the_table) {
+  std::ifstream stream(std::string(HOLDFAST_DOCUMENT_DIR) + "/formats.md");
+  const std::string page{std::istreambuf_iterator<char>(stream), {}};
+  for (const ForeignFormat& format : foreign_formats()) {
+    const std::string row = fmt::format("| {} | {} | {} | {} |\n", format.name, format.endings,
+                                        format.content, format.lost);
+    EXPECT_NE(page.find(row), std::string::npos) << row;
+  }
+}
+
 TEST(ForeignFormat, keeps_colours_and_fixed_modules) {
   const auto gate = read_as(sample("gate.vox"), ".vox");
   ASSERT_TRUE(gate);
   for (const ModuleEntry& module : gate.value().document.modules) {
-    const bool is_post = module.cell.z < 2 && module.cell.x == 0;
+    const bool is_post = module.cell.z < 2;
     EXPECT_EQ(module.color, is_post ? (Color{200, 60, 40}) : (Color{40, 90, 200}));
   }
   const auto arm = read_as(sample("arm.csv"), ".csv");
@@ -350,19 +360,21 @@ TEST(ForeignFormat, is_refused_with_one_line_where_something_is_wrong) {
       {read_as(block, ".stl", 500), "no cell has its centre inside the mesh"},
       {read_as(block, ".stl", 1e-6), "more than 1000000 cells"},
       {read_as(block, ".stl", 1e-3), "too many cells of this pitch"},
-      {read_as("v 0 0 0\nf 1 2 3\n", ".obj"), "line 2: the corner '2' of a face is none of the 1"},
+      {read_as("v 0 0 0\nf 1 2 3\n", ".obj"),
+       "line 2: a face has the corner '2', which is not in the 1"},
       {read_as("2x4 (0,0,0)\n2x4 (0,0)\n", ".txt"), "line 2: expected a brick such as"},
       {read_as("1 4 0 0 0 1 0 0 0 1 0 0 0 1 3024.dat\n", ".ldr"),
-       "line 1: the part '3024.dat' is none"},
+       "line 1: the part '3024.dat' is unknown"},
       {read_as("1 4 0 0 0 0 1 0 1 0 0 0 0 1 3001.dat\n", ".ldr"), "line 1: a part is turned"},
       {read_as("1 4 0 0 0 1 0 0 0 1 0 0 0 1 3001.dat\n1 4 0 -8 0 1 0 0 0 1 0 0 0 1 3001.dat\n",
                ".ldr"),
        "line 2: a brick at 0 -8 0 is not on the grid"},
       {read_as(R"([[0, 0, 0], [0, 0]])", ".json"), "/1: expected three integers"},
       {read_as(R"({"1": {"x": 0, "y": 0, "z": 0, "brick_id": 77, "ori": 0}})", ".json"),
-       "/1: the brick_id 77 is none"},
+       "/1: the brick_id 77 is not in"},
       // Keys of holdfast JSON without its heading: nothing of them is left out.
-      {read_as(R"({"modules": [[0, 0, 0]], "planned": [[1, 0, 0]]})", ".json"), "key \"format\" is missing"}};
+      {read_as(R"({"modules": [[0, 0, 0]], "planned": [[1, 0, 0]]})", ".json"),
+       "key \"format\" is missing"}};
   for (const auto& [read, expected] : others) {
     EXPECT_NE(message_of(read).find(expected), std::string::npos) << message_of(read);
   }

@@ -146,7 +146,7 @@ TEST(VisibleSimSolid, is_filled_with_catoms_at_their_centres) {
             }));
 }
 
-/// By default VisibleSim begins at the corner of the solid's box, one module before it.
+/// VisibleSim begins at the corner of the solid's box, one module before it, unless told.
 TEST(VisibleSimSolid, begins_one_cell_before_its_box_unless_told) {
   const auto laid = [](const char* how) {
     return cells_of(read(world("<csg " + std::string(how) +

@@ -15,6 +15,7 @@ namespace holdfast {
 enum class FileFormat : std::uint8_t {
   kJson,          ///< Reports.
   kHoldfastJson,  ///< Structures.
+  kPlan,          ///< Structures with steps: holdfast JSON or VisibleSim XML, as the ending says.
   kStructure,     ///< The same, VisibleSim's XML or a binary structure, as the ending says.
   kCsv,
   kSvg,

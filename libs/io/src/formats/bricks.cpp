@@ -22,7 +22,7 @@ struct NumberedBrick {
   BrickSize size;
 };
 
-/// By `brick_id` of StableLego.
+/// The bricks of StableLego by their `brick_id`.
 constexpr auto kStableLego = std::to_array<NumberedBrick>({{1, {2, 2}},
                                                            {2, {2, 4}},
                                                            {3, {2, 6}},
@@ -104,7 +104,7 @@ class LDrawGrid {
     const auto size = part ? find_brick(kLDraw, *part) : std::nullopt;
     if (!size) {
       reading_.fail({base::ErrorCode::kUnsupported,
-                     fmt::format("the part {} is none of the plain bricks that are known, such as "
+                     fmt::format("the part {} is unknown, expected a plain brick, such as "
                                  "3001.dat",
                                  excerpt(name)),
                      fmt::format("line {}", line)});

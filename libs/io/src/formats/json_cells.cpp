@@ -201,7 +201,7 @@ class JsonCells {
       take_failure();
       if (!reading_.has_failed() && !size) {
         reading_.fail({base::ErrorCode::kUnsupported,
-                       fmt::format("the brick_id {} is none of StableLego's library",
+                       fmt::format("the brick_id {} is not in StableLego's library",
                                    entry["brick_id"].dump()),
                        place.pointer()});
       }

@@ -140,8 +140,9 @@ void add_face(ForeignReading& reading, const std::vector<std::string_view>& row,
   for (std::size_t i = 1; i < row.size(); ++i) {
     const auto index = corner_index(row[i], points.size());
     if (!index) {
-      reading.fail_at(line, fmt::format("the corner {} of a face is none of the {} before it",
-                                        excerpt(row[i]), points.size()));
+      reading.fail_at(line,
+                      fmt::format("a face has the corner {}, which is not in the {} before it",
+                                  excerpt(row[i]), points.size()));
       return;
     }
     corners.push_back(*index);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numeric>
 #include <set>
 
 #include "holdfast/io/document.hpp"
@@ -228,15 +229,38 @@ std::vector<model::Payload> present_payloads(const Document& document) {
   return present;
 }
 
-bool is_connected(const Document& document, const base::Lattice& lattice) {
-  model::RobotSpec alone{.support_z = std::nullopt, .lattice = lattice};
-  std::ranges::transform(document.modules, std::back_inserter(alone.existing), &ModuleEntry::cell);
+/// The existing modules and those of the planned step.
+std::vector<base::Cell> present_cells(const Document& document) {
+  std::vector<base::Cell> cells;
+  std::ranges::transform(document.modules, std::back_inserter(cells), &ModuleEntry::cell);
   if (!document.steps.empty()) {
-    std::ranges::transform(document.steps.front(), std::back_inserter(alone.existing),
-                           &PlannedEntry::cell);
+    std::ranges::transform(document.steps.front(), std::back_inserter(cells), &PlannedEntry::cell);
   }
+  return cells;
+}
+
+bool is_connected(std::vector<base::Cell> cells, const base::Lattice& lattice) {
+  model::RobotSpec alone{
+      .existing = std::move(cells), .support_z = std::nullopt, .lattice = lattice};
   alone.fixed = {alone.existing.front()};
   return model::Robot::create(alone).has_value();
+}
+
+/// The unit in which cells seem to be counted, such as millimetres: the largest number that divides
+/// all distances along the axes, if the robot is connected once they are divided by it; else 1.
+std::int32_t unit_of(std::vector<base::Cell> cells, const base::Lattice& lattice) {
+  const base::Cell first = cells.front();
+  std::int32_t unit = 0;
+  for (const base::Cell& cell : cells) {
+    unit = std::gcd(unit, std::gcd(cell.x - first.x, std::gcd(cell.y - first.y, cell.z - first.z)));
+  }
+  if (unit <= 1) {
+    return 1;
+  }
+  for (base::Cell& cell : cells) {
+    cell = {(cell.x - first.x) / unit, (cell.y - first.y) / unit, (cell.z - first.z) / unit};
+  }
+  return is_connected(std::move(cells), lattice) ? unit : 1;
 }
 
 /// Whether a document's modules all hang above the floor, and nothing else could hold them.
@@ -253,14 +277,15 @@ base::Error with_other_lattice(base::Error error, const Document& document) {
   if (document.modules.empty()) {
     return error;
   }
-  if (is_connected(document, document.extension.lattice)) {
+  const std::vector<base::Cell> cells = present_cells(document);
+  if (is_connected(cells, document.extension.lattice)) {
     if (stands_higher(document)) {
       error.message += "; --support-z lowest takes its layer";
     }
     return error;
   }
   const auto other = std::ranges::find_if(kNamedLattices, [&](const NamedLattice& row) {
-    return row.lattice != document.extension.lattice && is_connected(document, row.lattice);
+    return row.lattice != document.extension.lattice && is_connected(cells, row.lattice);
   });
   if (other != kNamedLattices.end()) {
     const auto* const modules =
@@ -268,6 +293,10 @@ base::Error with_other_lattice(base::Error error, const Document& document) {
     error.message +=
         fmt::format("; the lattice is {}, in {} it is connected: --lattice {}",
                     lattice_name(document.extension.lattice), other->name, modules->name);
+  } else if (const std::int32_t unit = unit_of(cells, document.extension.lattice); unit > 1) {
+    error.message += fmt::format(
+        "; all cells lie {} apart: coordinates count cells, not lengths, so divide them by {}",
+        unit, unit);
   }
   return error;
 }

@@ -117,4 +117,22 @@ base::Result<Document> goal_of(const Document& document) {
   return goal;
 }
 
+Document with_targets(Document document) {
+  std::vector<model::Step>& plan = document.extension.plan;
+  const bool only_attaches =
+      document.steps.empty() && std::ranges::none_of(document.targets, is_goal) &&
+      std::ranges::all_of(
+          plan, [](const model::Step& step) { return step == model::Step{.attach = step.attach}; });
+  if (only_attaches) {
+    for (const model::Step& step : plan) {
+      Step& target = document.steps.emplace_back();
+      for (const base::Cell& cell : step.attach) {
+        target.emplace_back().cell = cell;
+      }
+    }
+    plan.clear();
+  }
+  return document;
+}
+
 }  // namespace holdfast::io

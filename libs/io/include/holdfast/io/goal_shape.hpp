@@ -29,4 +29,8 @@ base::Result<Step> goal_cells(const Element& target);
 /// only some modules have of their own is left out. Errors: it has none; those of goal_cells().
 base::Result<Document> goal_of(const Document& document);
 
+/// The document with its plan as targets of VisibleSim, one for each step, where all that they do
+/// is to attach modules that have nothing of their own; any other as it is.
+Document with_targets(Document document);
+
 }  // namespace holdfast::io
