@@ -3,6 +3,7 @@
 //
 // What cannot be read is refused with one line that says where, what was found and what is allowed;
 // quickly, and without much memory or stack, whatever the input.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
