@@ -217,6 +217,8 @@ def commands(scenarios, tests):
     yield ['check', safe, '--bonded', '--prove', '--set', 'mass_kg=0.05', '--set', 'pitch_mm=41']
     yield ['check', topples, '--prove', '--limit']
     yield ['check', breaks, '--limit', '--limit-seconds', '0']
+    yield from (['check', path, '--deformed'] for path in (safe, topples))
+    yield ['check', safe, '--deformed', '--up-to', '1', '--set', 'elastic_modulus_mpa=0.001']
     yield from (['check', path, '--remedies'] for path in (safe, breaks, topples))
     yield ['check', f'{tests}/physics/two_paths.json']
     yield ['check', 'slender.json', '--connections', '3']

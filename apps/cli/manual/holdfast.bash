@@ -24,9 +24,10 @@ _holdfast() {
         --html) files=1 ;;
         --certificate) files=1 ;;
         --limit-seconds) : ;;
+        --up-to) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --json --connections --csv --svg --size --title --grey --view --no-legend --vtk --html --certificate --prove --limit --limit-seconds --remedies -q --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --json --connections --csv --svg --size --title --grey --view --no-legend --vtk --html --certificate --prove --limit --limit-seconds --remedies --deformed --up-to -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     steps)

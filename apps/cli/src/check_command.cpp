@@ -34,6 +34,8 @@ struct CheckArguments {
   bool is_buckling_wanted = false;
   bool is_limit_wanted = false;
   bool are_remedies_wanted = false;
+  bool is_deformed_wanted = false;
+  double factor_max = large::Options{}.factor_max;
   double limit_seconds = limit::LimitOptions{}.seconds_max;
   int thread_count = 0;
   double memory_gb = 4;
@@ -259,6 +261,8 @@ class CheckRun {
         .is_proof_wanted = options_.is_proof_wanted || !options_.certificate.empty(),
         .is_buckling_wanted = options_.is_buckling_wanted,
         .is_limit_wanted = options_.is_limit_wanted,
+        .is_deformed_wanted = options_.is_deformed_wanted,
+        .factor_max = options_.factor_max,
         .limit_seconds_max = options_.limit_seconds};
     if (!options_.is_quiet) {
       options.progress = [this, &structure, file](int iteration, double error) {
@@ -315,6 +319,25 @@ int run(const CheckArguments& options) {
   return CheckRun(options).run();
 }
 
+void add_deformed(CLI::App& command, CheckArguments& options) {
+  CLI::Option* const deformed =
+      command
+          .add_flag("--deformed", options.is_deformed_wanted,
+                    "Judge the equilibrium in the deformed shape, at large rotations: does it "
+                    "buckle or collapse?")
+          ->excludes("--certificate")
+          ->excludes("--html")
+          ->excludes("--limit")
+          ->excludes("--prove")
+          ->excludes("--remedies");
+  command
+      .add_option("--up-to", options.factor_max,
+                  "The factor of all loads up to which the deformed shape is followed")
+      ->check(number_between(1.0, 1000.0))
+      ->needs(deformed)
+      ->capture_default_str();
+}
+
 }  // namespace
 
 Command add_check(CLI::App& app) {
@@ -351,6 +374,7 @@ Command add_check(CLI::App& app) {
   command->add_flag("--remedies", options->are_remedies_wanted,
                     "Find what would make an unsafe structure hold: one more module, a prop, a "
                     "module fixed or taken away, stronger connections");
+  add_deformed(*command, *options);
   add_quiet(*command, options->is_quiet);
   command->add_flag("--bonded", options->is_bonded,
                     "Treat the ground as glued: supports can neither lift nor tilt");

@@ -12,6 +12,7 @@
 #include "holdfast/host/team.hpp"
 #include "holdfast/limit/robot.hpp"
 #include "holdfast/model/families.hpp"
+#include "holdfast/verdict/deformed.hpp"
 #include "report_entry.hpp"
 
 namespace holdfast {
@@ -26,7 +27,10 @@ io::ReportEntry entry_of(const Structure& structure, const CheckResult& result) 
           .proof = result.proof ? &*result.proof : nullptr,
           .proof_seconds = result.proof_seconds,
           .limit = result.limit ? &*result.limit : nullptr,
-          .limit_seconds = result.limit_seconds};
+          .limit_seconds = result.limit_seconds,
+          .is_deformed = result.is_deformed,
+          .deformed = result.deformed ? &*result.deformed : nullptr,
+          .deformed_seconds = result.deformed_seconds};
 }
 
 void add_notes(std::string& text, std::span<const std::string> notes, const TextOptions& options) {
@@ -195,6 +199,19 @@ CheckResult check(const model::Robot& robot, const CheckOptions& options) {
     const double before = passed();
     result.limit = find_limit(robot, result.assessment, options);
     result.limit_seconds = passed() - before;
+  }
+  if (options.is_deformed_wanted) {
+    const double before = passed();
+    verdict::Deformed deformed =
+        verdict::assess_deformed(robot, std::move(result.assessment),
+                                 {.factor_max = options.factor_max,
+                                  .is_bonded = options.is_bonded,
+                                  .memory_bytes_max = options.memory_bytes_max,
+                                  .thread_count = options.thread_count});
+    result.is_deformed = true;
+    result.assessment = std::move(deformed.assessment);
+    result.deformed = std::move(deformed.path);
+    result.deformed_seconds = passed() - before;
   }
   return result;
 }

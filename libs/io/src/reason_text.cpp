@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "edge_text.hpp"
+#include "factor_text.hpp"
 #include "holdfast/host/text.hpp"
 #include "holdfast/io/beside_one.hpp"
 #include "holdfast/io/report.hpp"
@@ -60,6 +61,31 @@ std::string connection_text(Cells ends) {
   return model::text(ends[0]) + "-" + model::text(ends[1]);
 }
 
+/// The direction of a motion: an axis, or three numbers. Buckling goes either way.
+std::string motion_text(double x, double y, double z, bool has_sign) {
+  const std::array<double, 3> motion = {x, y, z};
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (std::abs(motion[i]) > 0.95) {
+      const char* const sign = !has_sign ? "" : motion[i] < 0 ? "-" : "+";
+      return fmt::format("{}{}", sign, "xyz"[i]);
+    }
+  }
+  return fmt::format("({:.2f}, {:.2f}, {:.2f})", x, y, z);
+}
+
+/// The loss of stability of a robot that bends.
+std::string losing_text(const Reason& reason, Cells cells) {
+  const Numbers& n = reason.numbers;
+  const bool is_buckling = reason.code == ReasonCode::kBuckles;
+  return fmt::format("it {} at {} of its loads: {} {} {}",
+                     is_buckling ? "buckles"
+                     : n[5] > 0  ? "tips over as it bends"
+                                 : "collapses",
+                     factor_text(n[0]), model::text(cells[0]),
+                     is_buckling ? "sways along" : "goes towards",
+                     motion_text(n[2], n[3], n[4], !is_buckling));
+}
+
 /// Reasons that have no numbers; empty for all others.
 std::string_view fixed_text(ReasonCode code) {
   switch (code) {
@@ -110,7 +136,7 @@ std::string_view fixed_text(ReasonCode code) {
 constexpr std::string_view kAskDeformed = "ask with --deformed";
 
 /// A buckling factor, or nothing where it is not known.
-std::string factor_text(double factor) {
+std::string softness_text(double factor) {
   return factor > 0 ? fmt::format(" (buckling factor {})", beside_one(factor, 3)) : "";
 }
 
@@ -128,12 +154,12 @@ std::string second_order_text(const Numbers& n) {
       return fmt::format(
           "linear theory does not suffice: bending changes the largest load ratio from {} to about "
           "{}{}; {}",
-          beside_one(n[2], 4), beside_one(n[3], 2), factor_text(n[1]), kAskDeformed);
+          beside_one(n[2], 4), beside_one(n[3], 2), softness_text(n[1]), kAskDeformed);
     case verdict::SecondOrderDoubt::kTilts:
       break;
   }
   return fmt::format("linear theory does not suffice: bent, the robot would tilt on its feet{}; {}",
-                     factor_text(n[1]), kAskDeformed);
+                     softness_text(n[1]), kAskDeformed);
 }
 
 std::string bending_text(const Numbers& n) {
@@ -152,7 +178,7 @@ std::string bending_text(const Numbers& n) {
   return fmt::format(
       "warning: linear theory is not trusted: bent, the largest load ratio is about {} rather than "
       "{}{}; {}",
-      beside_one(n[3], 4), beside_one(n[2], 4), factor_text(n[1]),
+      beside_one(n[3], 4), beside_one(n[2], 4), softness_text(n[1]),
       n[4] < 0 ? "state elastic_modulus_mpa" : kAskDeformed);
 }
 
@@ -185,6 +211,20 @@ std::string load_text(const Reason& reason, Cells cells) {
       return second_order_text(n);
     case ReasonCode::kBendingMatters:
       return bending_text(n);
+    case ReasonCode::kBuckles:
+    case ReasonCode::kCollapses:
+      return losing_text(reason, cells);
+    case ReasonCode::kTooSoft:
+      return fmt::format(
+          "at {} of its loads a connection is strained by {} at its facet's edge: so far no linear "
+          "law of beams holds, and what follows is not known",
+          factor_text(n[0]), n[1]);
+    case ReasonCode::kTouchesFloor:
+      return fmt::format("at {} of its loads {} bends down to the floor: what follows is not known",
+                         factor_text(n[0]), model::text(cells[0]));
+    case ReasonCode::kTouchesItself:
+      return fmt::format("at {} of its loads {} and {} meet as it bends: what follows is not known",
+                         factor_text(n[0]), model::text(cells[0]), model::text(cells[1]));
     case ReasonCode::kNoKnownTension:
       return fmt::format(
           "stable, and no connection is known to be pulled apart: none carries more than {:.1g} of "

@@ -19,6 +19,13 @@ std::vector<base::Cell> cells_of(const model::Robot& robot, const Reason& reason
       return ends(reason.numbers[0]);
     case ReasonCode::kGapsOpen:
       return ends(reason.numbers[1]);
+    case ReasonCode::kBuckles:
+    case ReasonCode::kCollapses:
+    case ReasonCode::kTouchesFloor:
+      return {robot.modules()[static_cast<std::size_t>(reason.numbers[1])].cell};
+    case ReasonCode::kTouchesItself:
+      return {robot.modules()[static_cast<std::size_t>(reason.numbers[1])].cell,
+              robot.modules()[static_cast<std::size_t>(reason.numbers[2])].cell};
     case ReasonCode::kMaySlip:
       return {robot.modules()[static_cast<std::size_t>(reason.numbers[0])].cell};
     default:
@@ -64,6 +71,11 @@ const char* name(ReasonCode code) {
                                                                        "in_pieces",
                                                                        "states_disagree",
                                                                        "displaced_mass",
+                                                                       "buckles",
+                                                                       "collapses",
+                                                                       "too_soft",
+                                                                       "touches_floor",
+                                                                       "touches_itself",
                                                                        "mass_moves",
                                                                        "second_order",
                                                                        "bending_matters"};

@@ -26,6 +26,7 @@
 #include "holdfast/io/near_miss.hpp"           // IWYU pragma: export
 #include "holdfast/io/picture.hpp"             // IWYU pragma: export
 #include "holdfast/io/report.hpp"              // IWYU pragma: export
+#include "holdfast/large/follow.hpp"           // IWYU pragma: export
 #include "holdfast/limit/limit_load.hpp"       // IWYU pragma: export
 #include "holdfast/model/robot.hpp"            // IWYU pragma: export
 #include "holdfast/model/robot_catalogue.hpp"  // IWYU pragma: export
@@ -104,6 +105,10 @@ struct CheckOptions {
   bool is_buckling_wanted = false;
   /// Seeks the limit load: the largest factor of all loads that any forces could balance.
   bool is_limit_wanted = false;
+  /// Follows the equilibria in the deformed shape, up to a factor of all loads of at least 1, and
+  /// judges the robot by them. Not together with a proof.
+  bool is_deformed_wanted = false;
+  double factor_max = large::Options{}.factor_max;
   double limit_seconds_max = limit::LimitOptions{}.seconds_max;
   /// A function that is called while the limit load is sought, with the bounds that are known.
   std::function<void(double low, double high)> limit_progress = {};
@@ -119,6 +124,9 @@ struct CheckResult {
   double proof_seconds = 0;  ///< Beyond `seconds`.
   std::optional<limit::LimitLoad> limit = {};
   double limit_seconds = 0;  ///< Beyond both.
+  bool is_deformed = false;  ///< Whether the assessment is that of the deformed shape.
+  std::optional<large::Path> deformed = {};  ///< None if the robot topples unbent, or unasked.
+  double deformed_seconds = 0;               ///< Beyond all others.
 };
 
 /// The library's version, "major.minor.patch".

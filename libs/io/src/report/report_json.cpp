@@ -8,6 +8,7 @@
 #include "holdfast/io/report.hpp"
 #include "holdfast/verdict/connection_law.hpp"
 #include "ordered_blocks.hpp"
+#include "report/deformed_report.hpp"
 #include "report/limit_report.hpp"
 
 namespace holdfast::io {
@@ -139,8 +140,10 @@ void write_connection(JsonStream& json, const model::Robot& robot,
   json.member("limit", model::name(laws.limit(pair, result)));
   json.member("shear_ratio", ratio_of(ratios, model::Limit::kShears));
   json.member("torsion_ratio", ratio_of(ratios, model::Limit::kTwists));
-  json.member("gap_mm", laws.gap_mm(pair, assessment.equilibrium.displacement,
-                                    assessment.equilibrium.displacement_low));
+  json.member("gap_mm", assessment.gaps_mm.empty()
+                            ? laws.gap_mm(pair, assessment.equilibrium.displacement,
+                                          assessment.equilibrium.displacement_low)
+                            : assessment.gaps_mm[connection]);
   json.end_object();
 }
 
@@ -431,6 +434,9 @@ class Writer {
     }
     if (entry_.limit != nullptr) {
       write_limit(json_, entry_);
+    }
+    if (entry_.is_deformed) {
+      write_deformed(json_, entry_);
     }
   }
 

@@ -11,6 +11,7 @@
 #include "holdfast/host/text.hpp"
 #include "holdfast/io/beside_one.hpp"
 #include "holdfast/io/report.hpp"
+#include "report/deformed_report.hpp"
 #include "report/limit_report.hpp"
 
 namespace holdfast::io {
@@ -43,14 +44,19 @@ std::string rigid_text(const limit::RigidStability& rigid) {
   return text;
 }
 
-void write_stability(Out out, const model::Robot& robot, const verdict::Assessment& assessment) {
+void write_stability(Out out, const ReportEntry& entry) {
+  const model::Robot& robot = *entry.robot;
+  const verdict::Assessment& assessment = *entry.assessment;
   const verdict::RigidBody& body = assessment.simplified;
   const bool is_doubtful = assessment.verdict == verdict::Verdict::kUndecided;
   // What the model-based check agrees with, or not.
   const bool is_said_stable = assessment.contact_model == verdict::ContactModel::kBonded
                                   ? assessment.is_stable
                                   : assessment.rigid.holds();
-  const char* word = assessment.is_stable ? "stable" : is_doubtful ? "not certain" : "unstable";
+  const char* word = entry.is_deformed && is_said_stable ? "unbent stable"
+                     : assessment.is_stable              ? "stable"
+                     : is_doubtful                       ? "not certain"
+                                                         : "unstable";
   if (body.margin_mm) {
     const auto& [a, b] = *body.edge;
     const std::array<double, 4> ends = {a.x, a.y, b.x, b.y};
@@ -73,7 +79,8 @@ void write_stability(Out out, const model::Robot& robot, const verdict::Assessme
   }
 }
 
-void write_loads(Out out, const model::Robot& robot, const verdict::Assessment& assessment) {
+void write_loads(Out out, const model::Robot& robot, const verdict::Assessment& assessment,
+                 bool is_deformed) {
   if (assessment.load_ratio_max && !assessment.worst) {
     const bool is_known = assessment.load_ratio_range.high < verdict::kLoadRatioTie;
     fmt::format_to(out, "  load ratio  no connection is {}pulled apart\n",
@@ -90,8 +97,10 @@ void write_loads(Out out, const model::Robot& robot, const verdict::Assessment& 
   }
   if (!order.empty() && !assessment.is_stable) {
     fmt::format_to(out, "              (not meaningful: the robot {})\n",
-                   assessment.verdict == verdict::Verdict::kUndecided ? "may move" : "topples");
-  } else if (assessment.weight_factor) {
+                   assessment.verdict == verdict::Verdict::kUndecided ? "may move"
+                   : is_deformed                                      ? "does not stay"
+                                                                      : "topples");
+  } else if (assessment.weight_factor && !is_deformed) {
     fmt::format_to(out, "  weight      the first connection breaks at {} times {}\n",
                    beside_one(*assessment.weight_factor, 3),
                    robot.has_payloads() ? "these loads" : "this weight");
@@ -175,10 +184,13 @@ std::string write_report_text(const ReportEntry& entry) {
   }
   fmt::format_to(out, "\n");
   write_modules(out, *entry.robot);
-  write_stability(out, *entry.robot, assessment);
-  write_loads(out, *entry.robot, assessment);
+  write_stability(out, entry);
+  write_loads(out, *entry.robot, assessment, entry.is_deformed);
   write_second_order(out, assessment);
   write_solver(out, assessment, entry.seconds);
+  if (entry.is_deformed) {
+    text += deformed_text(entry);
+  }
   if (entry.proof != nullptr) {
     write_proof(out, entry);
   }

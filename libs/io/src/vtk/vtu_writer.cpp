@@ -465,6 +465,9 @@ class Writer {
 
   double gap(std::size_t connection) const {
     const solver::Equilibrium& equilibrium = assessment_.equilibrium;
+    if (has_loads_ && !assessment_.gaps_mm.empty()) {
+      return assessment_.gaps_mm[connection];
+    }
     return has_loads_ && equilibrium.displacement.size() == module_count_
                ? laws_.gap_mm(robot_.connections()[connection], equilibrium.displacement,
                               equilibrium.displacement_low)

@@ -14,6 +14,7 @@
 #include "holdfast/io/json_stream.hpp"
 #include "holdfast/io/report_head.hpp"
 #include "holdfast/io/write_options.hpp"
+#include "holdfast/large/follow.hpp"
 #include "holdfast/limit/limit_load.hpp"
 #include "holdfast/proof/proof.hpp"
 #include "holdfast/verdict/assessment.hpp"
@@ -53,6 +54,9 @@ struct ReportEntry {
   double proof_seconds = 0;                 ///< What it took beyond that.
   const limit::LimitLoad* limit = nullptr;  ///< If it was asked for.
   double limit_seconds = 0;                 ///< What it took beyond both.
+  bool is_deformed = false;                 ///< Whether the deformed shape was asked for.
+  const large::Path* deformed = nullptr;    ///< Its path; none if the robot topples unbent.
+  double deformed_seconds = 0;              ///< What it took beyond all others.
   const WholeRobot* whole = nullptr;        ///< If the robot is a part: no connections are listed.
 };
 

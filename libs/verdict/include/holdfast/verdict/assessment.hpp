@@ -138,10 +138,13 @@ struct Assessment {
   /// connection is known to be pulled apart.
   std::optional<std::size_t> worst;
   std::vector<std::size_t> broken;  ///< Indices of connections at 1 or more, worst first.
-  std::optional<OpenGaps> gaps;     ///< None if no gap is too wide.
+  /// The gap of every connection, mm, where displacements are too large for those of linear theory;
+  /// else empty.
+  std::vector<double> gaps_mm;
+  std::optional<OpenGaps> gaps;  ///< None if no gap is too wide.
   /// Whether linear theory suffices; none if that was not asked, or nothing holds the robot.
   std::optional<SecondOrder> second_order;
-  std::optional<Lean> lean;         ///< None where the polygon does not decide, or nothing holds.
+  std::optional<Lean> lean;      ///< None where the polygon does not decide, or nothing holds.
   /// All loads could grow by this factor before the first connection breaks; none without `worst`.
   std::optional<double> weight_factor;
   LoadRange load_ratio_range;  ///< Void where load_ratio_max is.

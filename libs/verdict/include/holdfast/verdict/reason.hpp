@@ -56,7 +56,12 @@ enum class ReasonCode : std::uint8_t {
   /// Bending takes the centre of mass out of the support polygon: how far it moves, mm, its margin
   /// without that, and how far beyond the edge it is.
   kDisplacedMass,
-  kMassMoves,  ///< By much of its margin: how far, mm, the margin, and what is left of it.
+  kBuckles,    ///< At which factor of its loads, index of a module, the direction x, y, z it sways.
+  kCollapses,  ///< The same five, and 1 if facets tilt or are open then.
+  kTooSoft,    ///< A strain at a facet's edge is so large that no linear law holds: factor, strain.
+  kTouchesFloor,   ///< The factor, index of the module.
+  kTouchesItself,  ///< The factor, indices of two modules.
+  kMassMoves,      ///< By much of its margin: how far, mm, the margin, and what is left of it.
   /// Linear theory does not suffice: a SecondOrderDoubt, the buckling factor or 0, the largest load
   /// ratio, and the same to second order.
   kSecondOrder,
@@ -78,7 +83,7 @@ enum class SecondOrderDoubt : std::uint8_t {
 
 /// One reason for a verdict, as data. io::reason_text() makes a sentence of it.
 struct Reason {
-  static constexpr std::size_t kNumberMax = 5;
+  static constexpr std::size_t kNumberMax = 6;
 
   ReasonCode code = ReasonCode::kNoEquilibrium;
   std::array<double, kNumberMax> numbers{};

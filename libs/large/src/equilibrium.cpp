@@ -1,0 +1,197 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "equilibrium.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace holdfast::large {
+namespace {
+
+/// Newton's method takes three to five iterations, a few more where facets change.
+constexpr int kIterationMax = 15;
+
+/// An iteration moves and turns no module by more: a quarter of the pitch, and rad.
+constexpr double kStepMax = 0.25;
+
+/// The iteration from which on a change of facets' states may be a cycle.
+constexpr int kCycleBegin = 5;
+
+/// The last iterations whose states are told.
+constexpr int kTriedCount = 3;
+
+/// A facet is about to change its state if that changes no force by more than this share of the
+/// largest load.
+constexpr double kAboutToChange = 1e-4;
+
+/// The residual that is left, as a share of the largest load.
+constexpr double kResidual = 1e-10;
+
+/// Where rounding leaves more, an iteration ends the search that does not make the residual smaller
+/// by more than this factor, if it is not above this share of the largest load.
+constexpr double kRoundingPace = 0.3;
+constexpr double kRoundingResidual = 1e-6;
+
+/// Modules may move by so many pitches, and so many for each of lambda's growth as a share of it.
+constexpr double kJumpBase = 0.5;
+constexpr double kJumpShare = 4;
+
+/// The smallest step on the way from held to released.
+constexpr double kReleaseStepMin = 0.01;
+
+double in_newton(const Size& size, double pitch) {
+  return std::max(size.translation, size.rotation / pitch);
+}
+
+/// The largest distance between the places of a module, mm.
+double largest_way(const Configuration& a, const Configuration& b) {
+  double way = 0;
+  for (std::size_t i = 0; i < a.poses.size(); ++i) {
+    const auto& from = a.poses[i].displacement;
+    const auto& to = b.poses[i].displacement;
+    way = std::max(way, std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]));
+  }
+  return way;
+}
+
+bool is_to_be_released(const solver::FacetState& facet) {
+  return !facet.state.pressed && facet.is_held && !facet.is_bonded;
+}
+
+/// A configuration with the open facets of `here` released, but a share of their sideways stresses
+/// kept.
+Configuration released(const Configuration& here, const std::vector<Vec>& stresses, double share) {
+  Configuration next = here;
+  next.kept.clear();
+  for (const Vec& stress : stresses) {
+    next.kept.push_back(base::sum_of(Vec{}, share, stress));
+  }
+  return next;
+}
+
+/// Releases all facets that are open and held, in steps. Returns whether equilibria are stable all
+/// the way; `here` is the last.
+bool release(System& system, Configuration& here) {
+  std::vector<Vec> stresses(here.facets.size());
+  bool is_any = false;
+  for (std::size_t i = 0; i < here.facets.size(); ++i) {
+    if (is_to_be_released(here.facets[i])) {
+      stresses[i] = system.sideways_stress(here, i);
+      here.facets[i].is_held = false;
+      is_any = true;
+    }
+  }
+  double share = 1;
+  double step = 1;
+  while (is_any && share > 0) {
+    const double next_share = std::max(0.0, share - step);
+    auto next = converge(system, released(here, stresses, next_share));
+    if (next && largest_way(here, *next) <= kJumpBase * system.pitch() &&
+        examined(system, *next).is_stable) {
+      here = *std::move(next);
+      share = next_share;
+      step *= 2;
+      continue;
+    }
+    step /= 4;
+    if (step < kReleaseStepMin) {
+      return false;
+    }
+  }
+  here.kept.clear();
+  return true;
+}
+
+}  // namespace
+
+std::optional<Configuration> converge(System& system, Configuration start,
+                                      std::vector<FacetStates>* tried) {
+  Configuration here = std::move(start);
+  const double tolerance = kResidual * std::abs(here.factor) * system.load_size();
+  double last_size = std::numeric_limits<double>::infinity();
+  for (int iteration = 0; iteration < kIterationMax; ++iteration) {
+    const bool is_changed = system.look_up_facets(here);
+    std::vector<Vec> rest = system.residual(here);
+    const double size = in_newton(size_of(rest), system.pitch());
+    if (!std::isfinite(size)) {
+      return std::nullopt;
+    }
+    const bool is_rounding = size >= kRoundingPace * last_size &&
+                             size <= kRoundingResidual * std::abs(here.factor) * system.load_size();
+    if ((size <= tolerance || is_rounding) && !(is_changed && iteration == 0)) {
+      return here;
+    }
+    if (!system.factor(here, false)) {
+      return std::nullopt;
+    }
+    const std::vector<Vec> step = system.solve(std::move(rest));
+    const Size moved = size_of(step);
+    const double way = std::max(moved.translation / system.pitch(), moved.rotation);
+    if (!std::isfinite(way)) {
+      return std::nullopt;
+    }
+    // Where facets go to and fro, shorter steps end that.
+    const bool is_cycling = is_changed && iteration >= kCycleBegin;
+    const double share = (way > kStepMax ? kStepMax / way : 1) * (is_cycling ? 0.5 : 1);
+    if (tried != nullptr && iteration + kTriedCount >= kIterationMax) {
+      tried->push_back(here.facets);
+    }
+    system.move(here, step, share);
+    last_size = size;
+  }
+  return std::nullopt;
+}
+
+Found examined(System& system, Configuration here) {
+  Found found{.here = std::move(here)};
+  system.residual(found.here);
+  if (system.factor(found.here, true)) {
+    found.is_stable = system.is_definite();
+    found.direction = system.solve(system.loads());
+  }
+  return found;
+}
+
+bool is_lost_at_facets(System& system, const Configuration& here,
+                       const std::vector<FacetStates>& tried) {
+  const double tolerance = kAboutToChange * std::abs(here.factor) * system.load_size();
+  return std::ranges::any_of(tried, [&](const FacetStates& facets) {
+    Configuration other = here;
+    other.facets = facets;
+    if (facets == here.facets ||
+        !(in_newton(size_of(system.residual(other)), system.pitch()) <= tolerance)) {
+      return false;
+    }
+    return !system.factor(other, true) || !system.is_definite();
+  });
+}
+
+Search advance(System& system, const Found& from, double factor) {
+  Configuration start = from.here;
+  start.factor = factor;
+  const double growth = factor - from.here.factor;
+  if (!from.direction.empty()) {
+    const Size size = size_of(from.direction);
+    const double way =
+        std::abs(growth) * std::max(size.translation / system.pitch(), size.rotation);
+    system.move(start, from.direction, way > kStepMax ? growth * kStepMax / way : growth);
+  }
+  std::vector<FacetStates> tried;
+  auto next = converge(system, std::move(start), &tried);
+  if (!next) {
+    return {.failure = Failure::kNotFound, .tried = std::move(tried)};
+  }
+  const double way_max = (kJumpBase + kJumpShare * std::abs(growth) / factor) * system.pitch();
+  if (largest_way(from.here, *next) > way_max) {
+    return {.failure = Failure::kJump};
+  }
+  while (std::ranges::any_of(next->facets, is_to_be_released)) {
+    if (!release(system, *next)) {
+      return {.failure = Failure::kReleaseLost};
+    }
+  }
+  return {.found = examined(system, *std::move(next))};
+}
+
+}  // namespace holdfast::large
