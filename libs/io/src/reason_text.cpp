@@ -136,7 +136,7 @@ std::string_view fixed_text(ReasonCode code) {
 constexpr std::string_view kAskDeformed = "ask with --deformed";
 
 /// A buckling factor, or nothing where it is not known.
-std::string factor_text(double factor) {
+std::string softness_text(double factor) {
   return factor > 0 ? fmt::format(" (buckling factor {})", beside_one(factor, 3)) : "";
 }
 
@@ -154,12 +154,12 @@ std::string second_order_text(const Numbers& n) {
       return fmt::format(
           "linear theory does not suffice: bending changes the largest load ratio from {} to about "
           "{}{}; {}",
-          beside_one(n[2], 4), beside_one(n[3], 2), factor_text(n[1]), kAskDeformed);
+          beside_one(n[2], 4), beside_one(n[3], 2), softness_text(n[1]), kAskDeformed);
     case verdict::SecondOrderDoubt::kTilts:
       break;
   }
   return fmt::format("linear theory does not suffice: bent, the robot would tilt on its feet{}; {}",
-                     factor_text(n[1]), kAskDeformed);
+                     softness_text(n[1]), kAskDeformed);
 }
 
 std::string bending_text(const Numbers& n) {
@@ -178,7 +178,7 @@ std::string bending_text(const Numbers& n) {
   return fmt::format(
       "warning: linear theory is not trusted: bent, the largest load ratio is about {} rather than "
       "{}{}; {}",
-      beside_one(n[3], 4), beside_one(n[2], 4), factor_text(n[1]),
+      beside_one(n[3], 4), beside_one(n[2], 4), softness_text(n[1]),
       n[4] < 0 ? "state elastic_modulus_mpa" : kAskDeformed);
 }
 
@@ -207,6 +207,10 @@ std::string load_text(const Reason& reason, Cells cells) {
           "warning: bending moves the centre of mass by {:.3g} mm and leaves {:.3g} mm of its "
           "margin of {:.3g} mm; loads are those of the unbent robot",
           n[0], n[2], n[1]);
+    case ReasonCode::kSecondOrder:
+      return second_order_text(n);
+    case ReasonCode::kBendingMatters:
+      return bending_text(n);
     case ReasonCode::kBuckles:
     case ReasonCode::kCollapses:
       return losing_text(reason, cells);
@@ -221,10 +225,6 @@ std::string load_text(const Reason& reason, Cells cells) {
     case ReasonCode::kTouchesItself:
       return fmt::format("at {} of its loads {} and {} meet as it bends: what follows is not known",
                          factor_text(n[0]), model::text(cells[0]), model::text(cells[1]));
-    case ReasonCode::kSecondOrder:
-      return second_order_text(n);
-    case ReasonCode::kBendingMatters:
-      return bending_text(n);
     case ReasonCode::kNoKnownTension:
       return fmt::format(
           "stable, and no connection is known to be pulled apart: none carries more than {:.1g} of "

@@ -225,7 +225,8 @@ TEST(Reason, has_words_and_a_name_whatever_its_code) {
 TEST(Reason, is_told_with_its_numbers) {
   using verdict::ReasonCode;
   const Checked chain(long_chain());
-  const auto text = [&](ReasonCode code, std::array<double, 5> numbers, const char* quoted = "") {
+  const auto text = [&](ReasonCode code, std::array<double, verdict::Reason::kNumberMax> numbers,
+                        const char* quoted = "") {
     return reason_text(chain.robot, {.code = code, .numbers = numbers, .quoted = quoted});
   };
   EXPECT_EQ(text(ReasonCode::kTopples, {100, 60, 60, 100, 2.5713}),
@@ -244,6 +245,18 @@ TEST(Reason, is_told_with_its_numbers) {
             "unilateral contact (Eqs. 6-8); they do not agree whether anything breaks");
   EXPECT_EQ(text(ReasonCode::kVerdictOfTheRobot, {0}, "a module does not answer"),
             "the robot's own verdict: a module does not answer; not every module knows it");
+  const std::string second = model::text(chain.robot.modules()[1].cell);
+  EXPECT_EQ(text(ReasonCode::kBuckles, {0.5, 1, 0, -1, 0, 0}),
+            "it buckles at 0.5000 of its loads: " + second + " sways along y");
+  EXPECT_EQ(text(ReasonCode::kCollapses, {0.0001234, 1, 0, 0, -1, 0}),
+            "it collapses at 0.000123 of its loads: " + second + " goes towards -z");
+  EXPECT_EQ(text(ReasonCode::kCollapses, {0.9163, 1, 0.6, 0, -0.8, 1}),
+            "it tips over as it bends at 0.9163 of its loads: " + second +
+                " goes towards (0.60, 0.00, -0.80)");
+  EXPECT_EQ(text(ReasonCode::kTouchesFloor, {0.75, 1}),
+            "at 0.7500 of its loads " + second +
+                " bends down to the floor: what follows is not "
+                "known");
   EXPECT_EQ(text(ReasonCode::kNotProved, {}, "the bound is not finite"),
             "not proved: the bound is not finite");
 }

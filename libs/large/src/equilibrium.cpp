@@ -10,10 +10,20 @@ namespace holdfast::large {
 namespace {
 
 /// Newton's method takes three to five iterations, a few more where facets change.
-constexpr int kIterationMax = 25;
+constexpr int kIterationMax = 15;
 
 /// An iteration moves and turns no module by more: a quarter of the pitch, and rad.
 constexpr double kStepMax = 0.25;
+
+/// The iteration from which on a change of facets' states may be a cycle.
+constexpr int kCycleBegin = 5;
+
+/// The last iterations whose states are told.
+constexpr int kTriedCount = 3;
+
+/// A facet is about to change its state if that changes no force by more than this share of the
+/// largest load.
+constexpr double kAboutToChange = 1e-4;
 
 /// The residual that is left, as a share of the largest load.
 constexpr double kResidual = 1e-10;
@@ -28,7 +38,7 @@ constexpr double kJumpBase = 0.5;
 constexpr double kJumpShare = 4;
 
 /// The smallest step on the way from held to released.
-constexpr double kReleaseStepMin = 1e-3;
+constexpr double kReleaseStepMin = 0.01;
 
 double in_newton(const Size& size, double pitch) {
   return std::max(size.translation, size.rotation / pitch);
@@ -95,7 +105,8 @@ bool release(System& system, Configuration& here) {
 
 }  // namespace
 
-std::optional<Configuration> converge(System& system, Configuration start) {
+std::optional<Configuration> converge(System& system, Configuration start,
+                                      std::vector<FacetStates>* tried) {
   Configuration here = std::move(start);
   const double tolerance = kResidual * std::abs(here.factor) * system.load_size();
   double last_size = std::numeric_limits<double>::infinity();
@@ -120,7 +131,12 @@ std::optional<Configuration> converge(System& system, Configuration start) {
     if (!std::isfinite(way)) {
       return std::nullopt;
     }
-    const double share = way > kStepMax ? kStepMax / way : 1;
+    // Where facets go to and fro, shorter steps end that.
+    const bool is_cycling = is_changed && iteration >= kCycleBegin;
+    const double share = (way > kStepMax ? kStepMax / way : 1) * (is_cycling ? 0.5 : 1);
+    if (tried != nullptr && iteration + kTriedCount >= kIterationMax) {
+      tried->push_back(here.facets);
+    }
     system.move(here, step, share);
     last_size = size;
   }
@@ -137,6 +153,20 @@ Found examined(System& system, Configuration here) {
   return found;
 }
 
+bool is_lost_at_facets(System& system, const Configuration& here,
+                       const std::vector<FacetStates>& tried) {
+  const double tolerance = kAboutToChange * std::abs(here.factor) * system.load_size();
+  return std::ranges::any_of(tried, [&](const FacetStates& facets) {
+    Configuration other = here;
+    other.facets = facets;
+    if (facets == here.facets ||
+        !(in_newton(size_of(system.residual(other)), system.pitch()) <= tolerance)) {
+      return false;
+    }
+    return !system.factor(other, true) || !system.is_definite();
+  });
+}
+
 Search advance(System& system, const Found& from, double factor) {
   Configuration start = from.here;
   start.factor = factor;
@@ -147,9 +177,10 @@ Search advance(System& system, const Found& from, double factor) {
         std::abs(growth) * std::max(size.translation / system.pitch(), size.rotation);
     system.move(start, from.direction, way > kStepMax ? growth * kStepMax / way : growth);
   }
-  auto next = converge(system, std::move(start));
+  std::vector<FacetStates> tried;
+  auto next = converge(system, std::move(start), &tried);
   if (!next) {
-    return {.failure = Failure::kNotFound};
+    return {.failure = Failure::kNotFound, .tried = std::move(tried)};
   }
   const double way_max = (kJumpBase + kJumpShare * std::abs(growth) / factor) * system.pitch();
   if (largest_way(from.here, *next) > way_max) {

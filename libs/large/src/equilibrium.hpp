@@ -26,17 +26,29 @@ enum class Failure : std::uint8_t {
   kReleaseLost,  ///< Facets that open and let go sideways have no stable equilibrium near.
 };
 
+/// The states of all facets in an iteration.
+using FacetStates = std::vector<solver::FacetState>;
+
 struct Search {
   std::optional<Found> found = {};
   Failure failure = Failure::kNone;
+  std::vector<FacetStates> tried = {};  ///< In the last iterations, where nothing was found.
 };
 
 /// Makes an equilibrium, with facets held or released as they are, from a configuration near it.
-/// Facets take the states that they need.
-std::optional<Configuration> converge(System& system, Configuration start);
+/// Facets take the states that they need. Where it finds none it tells the states of the last
+/// iterations.
+std::optional<Configuration> converge(System& system, Configuration start,
+                                      std::vector<FacetStates>* tried = nullptr);
 
 /// Finds stability and direction of an equilibrium, for which residual() is asked once more.
 Found examined(System& system, Configuration here);
+
+/// Whether an equilibrium is where facets are about to go into one of the states that were tried,
+/// forces being the same, and is not stable in that: then there is none beyond, and the robot tips
+/// over these facets.
+bool is_lost_at_facets(System& system, const Configuration& here,
+                       const std::vector<FacetStates>& tried);
 
 /// The equilibrium for another lambda, near that of `from`, open facets released for good: their
 /// sideways forces go to none in steps, over stable equilibria.

@@ -68,7 +68,7 @@ class Follower {
   void look_for_events(const Stop& from, const Stop& to);
   void find_event(std::size_t kind, const Stop& from, const Stop& to);
   void accept(Stop next);
-  bool step_back(double failed_at, Failure failure);
+  bool step_back(double failed_at, const Search& failed);
   void lose(const Found& from, double factor, Loss loss);
   void find_bifurcation(const Found& unstable);
 
@@ -241,13 +241,14 @@ void Follower::find_bifurcation(const Found& unstable) {
 }
 
 /// Takes a smaller step where there was no equilibrium. Returns whether to go on.
-bool Follower::step_back(double failed_at, Failure failure) {
+bool Follower::step_back(double failed_at, const Search& failed) {
   step_ = (failed_at - here_.state.factor) / 4;
   if (step_ >= resolution()) {
     return true;
   }
   const double factor = here_.state.factor;
-  if (failure == Failure::kReleaseLost) {
+  if (failed.failure == Failure::kReleaseLost ||
+      is_lost_at_facets(system_, here_.found.here, failed.tried)) {
     lose(here_.found, factor, Loss::kLimit);
     return false;
   }
@@ -283,7 +284,7 @@ Path Follower::run() {
     next = before < 1 && next > 1 - kFactorResolution ? 1 : next;
     Search search = advance(system_, here_.found, next);
     if (!search.found) {
-      if (!step_back(next, search.failure)) {
+      if (!step_back(next, search)) {
         break;
       }
     } else if (!search.found->is_stable) {

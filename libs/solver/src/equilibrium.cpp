@@ -164,21 +164,22 @@ void EquilibriumSolver::attempt(const ContactOptions& contact, Equilibrium& resu
   LinearSystem& system = *choice_->system();
   const LinearReport before = system.report();
   system.set_law(contact);
+  const bool is_checked = options_.second_order != SecondOrderWish::kNothing;
   const bool is_all_bonded = std::ranges::all_of(system.facets(), &FacetState::is_bonded);
   if (options_.is_bonded || host::all(system.robot().ranks(), is_all_bonded)) {
     BondedContact search(system, options_);
     solve_with(
-        system, search, [] { return false; }, result);
+        system, search, [&] { return is_checked; }, result);
   } else if (contact.law == ContactLaw::kRegularised) {
     RegularisedContact search(system, options_);
     search.go_on(contact);
     solve_with(
-        system, search, [&] { return search.has_doubts(); }, result);
+        system, search, [&] { return is_checked || search.has_doubts(); }, result);
   } else {
     UnilateralContact search(system, options_);
     search.go_on(contact);
     solve_with(
-        system, search, [&] { return search.open_but_held_count() > 0; }, result);
+        system, search, [&] { return is_checked || search.open_but_held_count() > 0; }, result);
     compare_with_free_facets(search, result);
   }
   const Attempt& last = attempts.emplace_back(attempt_since(before, system.report(), result));
@@ -203,10 +204,14 @@ void EquilibriumSolver::seek_others(Equilibrium& settled) {
 
 SecondOrder EquilibriumSolver::find_second_order(const Equilibrium& settled,
                                                  const SecondOrderOptions& options) {
-  const std::unique_ptr<LinearSystem> beside = choice_->make_direct_beside();
-  LinearSystem& system = beside ? *beside : *choice_->system();
-  take_states(system, settled.contact);
-  return second_order(system, settled.displacement, options);
+  const std::unique_ptr<DirectSystem> beside = choice_->make_direct_beside();
+  for (LinearSystem* const system :
+       {choice_->system(), static_cast<LinearSystem*>(beside.get())}) {
+    if (system != nullptr) {
+      take_states(*system, settled.contact);
+    }
+  }
+  return second_order(*choice_->system(), beside.get(), settled.displacement, options);
 }
 
 std::vector<Equilibrium> EquilibriumSolver::seek_settled(const ContactOptions& contact) {

@@ -22,7 +22,7 @@ constexpr std::size_t kUnilateralFillMax = 16;
 /// fill in and products of two blocks per node. Robots of many modules with so many connections each
 /// are not tried, as even the order of elimination takes long and then fills in more.
 constexpr std::size_t kBesideFillMax = 16;
-constexpr std::size_t kBesideProductMax = 150;
+constexpr std::size_t kBesideProductMax = 100;
 constexpr std::size_t kBesideCountTried = 5'000;
 constexpr double kBesideConnectionsMax = 2.0;
 

@@ -186,9 +186,7 @@ std::string write_report_text(const ReportEntry& entry) {
   write_modules(out, *entry.robot);
   write_stability(out, entry);
   write_loads(out, *entry.robot, assessment, entry.is_deformed);
-  if (!entry.is_deformed) {
-    write_second_order(out, assessment);
-  }
+  write_second_order(out, assessment);
   write_solver(out, assessment, entry.seconds);
   if (entry.is_deformed) {
     text += deformed_text(entry);

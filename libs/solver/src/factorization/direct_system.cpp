@@ -260,11 +260,8 @@ std::optional<std::vector<std::vector<Vec6<double>>>> DirectSystem::solve_each(
 }
 
 std::optional<bool> DirectSystem::is_definite(const StressedBeams& beams, double factor) {
-  if (!lu_->factor(thread_count_)) {
-    return false;
-  }
   if (factor == 0) {
-    return lu_->is_positive_definite();
+    return lu_->factor(thread_count_) && lu_->is_positive_definite();
   }
   BlockLu sum = *lu_;
   add_stress(beams, factor, sum);

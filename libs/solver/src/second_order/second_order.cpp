@@ -34,11 +34,11 @@ constexpr std::size_t kStepsMax = 300;
 /// about the square of that.
 constexpr double kResidualShare = 1e-7;
 
-/// By iteration: steps that are always made, the factor up to which more are, and when they end.
-constexpr std::size_t kFewSteps = 2;
+/// By iteration: more than one step is made where the bound is not so many times what is asked, until
+/// it changes by no more than a share.
 constexpr std::size_t kManySteps = 12;
-constexpr double kNearFactor = 3;
-constexpr double kChangeShare = 1e-3;
+constexpr double kNearFactor = 10;
+constexpr double kChangeShare = 1e-2;
 
 /// Factors above this are rounding of none.
 constexpr double kFactorMax = 1e12;
@@ -107,8 +107,7 @@ class Search {
     for (std::size_t step = 0; step < kManySteps && add(std::move(forces)); ++step) {
       const Subspace::Best best = subspace_.best();
       const bool is_near = best.value * options_.factor_max * kNearFactor > 1;
-      const bool is_over = step + 1 >= kFewSteps &&
-                           (!is_near || best.value - before < kChangeShare * best.value);
+      const bool is_over = !is_near || best.value - before < kChangeShare * best.value;
       if (best.value * kFactorMax > 1) {
         bound.factor = 1 / best.value;
         bound.mode = best.motion.x;
@@ -180,27 +179,29 @@ class Search {
   bool is_settled_ = false;
 };
 
-Buckling find_buckling(LinearSystem& system, StressedBeams& beams,
+/// `direct` is the system that can be factorized, if there is one.
+Buckling find_buckling(LinearSystem& system, LinearSystem* direct, StressedBeams& beams,
                        const SecondOrderOptions& options) {
-  const std::optional<bool> is_stiff = system.is_definite(beams, 0);
-  if (!is_stiff) {
+  if (direct == nullptr) {
     return Search(system, beams, options).find_bound();
   }
-  if (!*is_stiff) {
-    return {.answer = BucklingAnswer::kNoStiffness};
-  }
-  if (!options.is_factor_wanted && *system.is_definite(beams, options.factor_max)) {
+  // K is never negative: if K + factor K_G is positive, so is all between.
+  if (!options.is_factor_wanted && *direct->is_definite(beams, options.factor_max)) {
     return {.answer = BucklingAnswer::kAbove, .factor = options.factor_max};
   }
-  return Search(system, beams, options).find_factor();
+  if (!*direct->is_definite(beams, 0)) {
+    return {.answer = BucklingAnswer::kNoStiffness};
+  }
+  return Search(*direct, beams, options).find_factor();
 }
 
 }  // namespace
 
-SecondOrder second_order(LinearSystem& system, const Vecs& displacement,
+SecondOrder second_order(LinearSystem& system, LinearSystem* direct, const Vecs& displacement,
                          const SecondOrderOptions& options) {
   StressedBeams beams(system, displacement, options.thread_count);
-  SecondOrder result{.buckling = find_buckling(system, beams, options)};
+  LinearSystem* const factorized = system.is_exact() ? &system : direct;
+  SecondOrder result{.buckling = find_buckling(system, factorized, beams, options)};
   if (result.buckling.answer == BucklingAnswer::kNoStiffness) {
     return result;
   }
