@@ -16,7 +16,10 @@ constexpr int kIterationMax = 15;
 constexpr double kStepMax = 0.25;
 
 /// The iteration from which on a change of facets' states may be a cycle.
-constexpr int kCycleBegin = 5;
+constexpr int kCycleBegin = 2;
+
+/// Halvings of the bracket in the line search that ends cycles.
+constexpr int kLineHalvings = 30;
 
 /// The last iterations whose states are told.
 constexpr int kTriedCount = 3;
@@ -53,6 +56,33 @@ double largest_way(const Configuration& a, const Configuration& b) {
     way = std::max(way, std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]));
   }
   return way;
+}
+
+/// Where facets go to and fro: the share of a step, at most `longest`, at which the energy along it
+/// is least, by the root of its slope.
+double search_line(System& system, const Configuration& here, const std::vector<Vec>& step,
+                   double longest) {
+  const auto slope_at = [&](double share) {
+    Configuration next = here;
+    system.move(next, step, share);
+    system.look_up_facets(next);
+    const std::vector<Vec> rest = system.residual(next);
+    double slope = 0;
+    for (std::size_t node = 0; node < rest.size(); ++node) {
+      slope -= base::dot(rest[node], step[node]);
+    }
+    return slope;
+  };
+  if (!(slope_at(0) < 0) || slope_at(longest) <= 0) {
+    return longest;
+  }
+  double low = 0;
+  double high = longest;
+  for (int i = 0; i < kLineHalvings; ++i) {
+    const double middle = (low + high) / 2;
+    (slope_at(middle) <= 0 ? low : high) = middle;
+  }
+  return high;
 }
 
 bool is_to_be_released(const solver::FacetState& facet) {
@@ -131,9 +161,10 @@ std::optional<Configuration> converge(System& system, Configuration start,
     if (!std::isfinite(way)) {
       return std::nullopt;
     }
-    // Where facets go to and fro, shorter steps end that.
-    const bool is_cycling = is_changed && iteration >= kCycleBegin;
-    const double share = (way > kStepMax ? kStepMax / way : 1) * (is_cycling ? 0.5 : 1);
+    double share = way > kStepMax ? kStepMax / way : 1;
+    if (is_changed && iteration >= kCycleBegin) {
+      share = search_line(system, here, step, share);
+    }
     if (tried != nullptr && iteration + kTriedCount >= kIterationMax) {
       tried->push_back(here.facets);
     }
