@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._failures import Reliability, reliability_of
 from ._optional import need
 from ._progress import Progress, told
 from ._verdict import VERDICTS, Judged, Verdict
@@ -171,6 +172,26 @@ class Report(Judged):
             found[kind][0] for kind in ('module', 'prop', 'fixing', 'removal'))
         return Remedies(module, prop, fixing, removal, factor,
                         {kind: tried for kind, (_, tried) in found.items()})
+
+    def reliability(self, scatter: float, *, common: float = 0,
+                    law: str = 'lognormal') -> Reliability:
+        """How sure it is that every connection holds, where strengths scatter.
+
+        Parameters
+        ----------
+        scatter
+            Standard deviation over mean of each strength by itself, 0.1 for 10 %.
+        common
+            That of a factor that all strengths share.
+        law
+            Their distribution: ``lognormal``, ``normal`` or ``weibull``.
+
+        >>> from holdfast import Robot
+        >>> bar = Robot([[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0]], fixed=[[0, 0, 0]])
+        >>> bar.check().reliability(0.1).distribution
+        'lognormal'
+        """
+        return reliability_of(_core.reliability(self._held, scatter, common, law))
 
     @property
     def module_load_ratios(self) -> npt.NDArray[np.float64]:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from typing import TYPE_CHECKING, Any, Optional, Union
@@ -12,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._failures import LoseOne, lose_one_of
 from ._progress import Progress, told
 from ._report import Report
 
@@ -325,6 +327,22 @@ class Robot:
         with told(progress, 'check') as tell:
             return Report._of(_core.check(self._held, threads, memory, bonded, limit,
                                           limit_seconds, proof, tell))
+
+    def lose_one(self, *, parts: Sequence[str] = ('connection', 'module', 'foot'),
+                 seconds: float = math.inf, threads: int = 0, memory: float = 4,
+                 bonded: bool = False, progress: Progress = None) -> LoseOne:
+        """What follows if any single connection, module or foot is lost?
+
+        Losses that are not judged after `seconds` are undecided; `progress` is called with (losses
+        judged, of how many).
+
+        >>> square = Robot([[x, y, 0] for x in range(2) for y in range(2)])
+        >>> square.lose_one(parts=['connection']).holds_all
+        True
+        """
+        with told(progress, 'lose_one', is_counted=True) as tell:
+            return lose_one_of(_core.lose_one(self._held, list(parts), seconds, threads, memory,
+                                              bonded, tell))
 
     def next(self, *, threads: int = 0, memory: float = 4, bonded: bool = False,
              progress: Progress = None) -> Places:

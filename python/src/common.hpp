@@ -114,6 +114,7 @@ py::array view(const T* values, std::size_t count, const py::dtype& type, const 
 void add_structure(py::module_& module);
 void add_check(py::module_& module);
 void add_pickle(py::module_& module);
+void add_failures(py::module_& module);
 void add_plans(py::module_& module);
 void add_distributed(py::module_& module);
 

@@ -8,6 +8,7 @@ PYBIND11_MODULE(_core, module) {
   add_structure(module);
   add_check(module);
   add_pickle(module);
+  add_failures(module);
   add_plans(module);
   add_distributed(module);
 }

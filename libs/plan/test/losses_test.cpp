@@ -125,7 +125,7 @@ model::RobotSpec only(model::RobotSpec spec, const std::vector<Cell>& cells) {
 }
 
 bool is_held(const model::RobotSpec& spec, const std::vector<Cell>& piece) {
-  return model::Robot::create(only(spec, piece)).has_value();
+  return model::Robot::create(only(spec, piece), 1).has_value();
 }
 
 Expected check_without(const model::RobotSpec& spec, const Loss& loss) {
@@ -137,7 +137,8 @@ Expected check_without(const model::RobotSpec& spec, const Loss& loss) {
       worst.verdict = Verdict::kUnstable;
       continue;
     }
-    const Judgement here = judge(model::Robot::create(only(changed, piece)).value());
+    const Judgement here =
+        judge(model::Robot::create(only(changed, piece), 1).value(), {.thread_count = 1});
     worst.verdict = rank(here.verdict) > rank(worst.verdict) ? here.verdict : worst.verdict;
     if (here.load_ratio_max) {
       worst.load_ratio_max =
@@ -183,7 +184,7 @@ struct Count {
 void expect_as_checked(const model::RobotSpec& spec, const std::string& what, Count& count) {
   const auto robot = model::Robot::create(spec);
   ASSERT_TRUE(robot) << what;
-  const LossReport report = lose_each(spec);
+  const LossReport report = lose_each(spec, {.equilibrium = {.thread_count = 1}});
   if (!report.whole.is_safe()) {
     EXPECT_FALSE(report.holds_all());
     return;

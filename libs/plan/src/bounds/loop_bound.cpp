@@ -153,54 +153,81 @@ std::vector<LoopBound::Loop> LoopBound::loops_beside(const model::Connection& lo
   return triangles.empty() ? squares : triangles;
 }
 
-/// The sum of t^2 / h if one loop takes all that acts at the node of the first end.
-double LoopBound::energy_along(std::size_t from, const Loop& loop, const Vec& at_first) const {
+/// Calls each(module, other, direction, force) for the beams of a loop that takes all that acts at
+/// the node of the first end.
+template <class Each>
+void LoopBound::walk(std::size_t from, const Loop& loop, const Vec& at_first,
+                     const Each& each) const {
   const double pitch = robot_.material().pitch_mm;
   const Vec start = node_place(robot_, from);
   std::size_t module = from;
-  double energy = 0;
   for (std::size_t i = 0; i < loop.count; ++i) {
     const Vec to = base::sum_of<double>(node_place(robot_, module), -1, start);
-    const Vec force = force_in_middle(beam_, loop.steps[i], force_at(at_first, to), pitch);
+    const int direction = base::index(loop.steps[i]);
+    const std::size_t other = at(robot_.connected()[module][at(direction)]);
+    each(module, other, direction,
+         force_in_middle(beam_, loop.steps[i], force_at(at_first, to), pitch));
+    module = other;
+  }
+}
+
+/// The sum of t^2 / h if one loop takes all.
+double LoopBound::energy_along(std::size_t from, const Loop& loop, const Vec& at_first) const {
+  double energy = 0;
+  walk(from, loop, at_first, [&](std::size_t, std::size_t, int, const Vec& force) {
     for (std::size_t k = 0; k < 6; ++k) {
       energy += force[k] * force[k] / stiffness_[k];
     }
-    module = at(robot_.connected()[module][at(base::index(loop.steps[i]))]);
-  }
+  });
   return energy;
 }
 
-double LoopBound::energy(const model::Connection& lost, const std::vector<Loop>& loops,
-                         const Vec& at_first) const {
-  double sum = 0;
-  for (const Loop& loop : loops) {
-    const double alone = energy_along(at(lost.a), loop, at_first);
-    if (alone <= 0) {
-      return 0;
-    }
-    sum += 1 / alone;
+/// The largest load ratio of its share alone, either way round.
+double LoopBound::change_of_ratio(std::size_t from, const Loop& loop, const Vec& at_first) const {
+  double largest = 0;
+  for (const double sign : {loop.share, -loop.share}) {
+    walk(from, loop, at_first,
+         [&](std::size_t module, std::size_t other, int direction, const Vec& force) {
+           Vec shared{};
+           base::add_times(shared, sign, force);
+           largest = std::max(largest, connection_ratio(robot_, module, other, direction, shared));
+         });
   }
-  return 1 / sum;
+  return largest;
 }
 
 std::optional<double> LoopBound::without(const model::Connection& lost) const {
-  const std::vector<Loop> loops = loops_beside(lost);
-  if (loops.empty()) {
-    return std::nullopt;
-  }
+  std::vector<Loop> loops = loops_beside(lost);
+  const std::size_t from = at(lost.a);
   const std::array<Vec, 6>& pulls = pulls_[at(base::index(lost.direction))];
   const auto& u = solved_.equilibrium.displacement;
-  const Vec carried = beam_.middle_force(lost.direction, u[at(lost.a)], u[at(lost.b)]);
+  const Vec carried = beam_.middle_force(lost.direction, u[from], u[at(lost.b)]);
   Vec all{};
-  double units = 0;
   for (std::size_t k = 0; k < 6; ++k) {
     base::add_times(all, carried[k], pulls[k]);
-    units += stiffness_[k] * energy(lost, loops, pulls[k]);
   }
-  const double norm = std::sqrt(energy(lost, loops, all)) + error_ * std::sqrt(units);
+  double sum = 0;
+  for (Loop& loop : loops) {
+    loop.share = 1 / (energy_along(from, loop, all) + std::numeric_limits<double>::min());
+    sum += loop.share;
+  }
+  double square = 0;
+  double units = 0;
+  double change = 0;
+  for (Loop& loop : loops) {
+    loop.share /= sum;
+    const double weight = loop.share * loop.share;
+    square += weight * energy_along(from, loop, all);
+    for (std::size_t k = 0; k < 6; ++k) {
+      units += weight * stiffness_[k] * energy_along(from, loop, pulls[k]);
+    }
+    change = std::max(change, change_of_ratio(from, loop, all));
+  }
+  const double doubt = error_ * std::sqrt(units);
+  const double norm = std::sqrt(square) + doubt;
   const double high = solved_.load_ratio_max ? std::max(0.0, solved_.load_ratio_range.high) : 0.0;
-  const double ratio = high + ratio_per_norm_ * norm;
-  if (!(ratio < kLoopRatioMax) || !(norm < room_)) {
+  const double ratio = high + change / 2 + ratio_per_norm_ * (norm + doubt) / 2;
+  if (loops.empty() || !(ratio < kLoopRatioMax) || !(norm / 2 < room_)) {
     return std::nullopt;
   }
   const double shift = std::hypot(sway_[0], sway_[1]) * norm * std::sqrt(1 + units) / mass_kg_;

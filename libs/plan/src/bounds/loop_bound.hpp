@@ -21,11 +21,15 @@ namespace holdfast::plan {
 /// at its ends. By the principle of least complementary energy v . K' v is no more than the sum
 /// of t^2 / h over any forces t that balance p: those of p carried along the loops, which have no
 /// beam in common, in shares that make the sum least, 1 / sum of 1 / U_i with U_i of one loop.
-/// That bounds load ratios and what facets lack to tilting as of LossJudge. The solver's
-/// error s in the energy norm adds s (sum of L_k^2)^(1/2), with L_k^2 that sum for a unit of each
-/// of the beam's six forces. Across the lost beam itself v opens a gap w with w . h w no more than
-/// that sum times v . K' v, so v . K v is no more than 1 + it times v . K' v, and the centre of
-/// mass moves by no more than its root times |K^-1 l|, l pulling each module sideways by its mass.
+/// As the displacements v = 0 belong to p as well, the exact change of forces lies on the sphere
+/// whose diameter joins 0 and t [Prager 1947]: a load ratio c, convex and homogeneous, grows by no
+/// more than c(t) / 2 + r |t| / 2, r being load_ratio_per_energy_norm(), and what a facet lacks to
+/// tilting is off by (h_m + h_f b^2)^(1/2) |t| / 2, as no loop has a facet. The solver's error s in
+/// the energy norm makes t uncertain by s (sum of |t_k|^2)^(1/2), with t_k what the loops take of a
+/// unit of each of the beam's six forces. Across the lost beam itself v opens a gap w with w . h w
+/// no more than that sum times v . K' v, so v . K v is no more than 1 + it times v . K' v, and the
+/// centre of mass moves by no more than its root times |K^-1 l|, l pulling each module sideways by
+/// its mass.
 class LoopBound {
  public:
   /// Makes a bound for a robot that is safe by its check, all its facets stuck; none if it is not
@@ -43,15 +47,17 @@ class LoopBound {
   struct Loop {
     std::array<base::Direction, 3> steps{};
     std::size_t count = 0;
+    double share = 0;  ///< That it takes of what is carried.
   };
 
   LoopBound(const model::Robot& robot, const verdict::Assessment& solved);
   bool find_sway(model::RobotSpec spec);
   void look_at_facets(bool is_bonded);
   std::vector<Loop> loops_beside(const model::Connection& lost) const;
-  double energy(const model::Connection& lost, const std::vector<Loop>& loops,
-                const Vec& at_first) const;
+  template <class Each>
+  void walk(std::size_t from, const Loop& loop, const Vec& at_first, const Each& each) const;
   double energy_along(std::size_t from, const Loop& loop, const Vec& at_first) const;
+  double change_of_ratio(std::size_t from, const Loop& loop, const Vec& at_first) const;
 
   const model::Robot& robot_;
   const verdict::Assessment& solved_;

@@ -198,7 +198,7 @@ class LossSearch {
     }
   }
 
-  /// Those that are safe by a bound(part).
+  /// Answers those that are safe by what bound_of(part) says.
   template <class Bound>
   void bound_each(const Bound& bound_of) {
     host::Team team(options_.equilibrium.thread_count, parts_.size());

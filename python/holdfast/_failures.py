@@ -1,0 +1,61 @@
+# SPDX-FileCopyrightText: The holdfast authors
+# SPDX-License-Identifier: Apache-2.0
+"""How sure a report is, and what follows if a part is lost."""
+from __future__ import annotations
+
+import json
+from typing import Any, NamedTuple, Optional
+
+
+class Reliability(NamedTuple):
+    """The probability that every connection holds where strengths scatter."""
+
+    probability_holds: Optional[float]
+    """None if the robot is not known to stay where it is, or no load is known."""
+    probability_fails: Optional[float]
+    """One less that, with all its digits where it is small."""
+    probability_low: Optional[float]
+    """At least this, by the range of load ratios."""
+    probability_high: Optional[float]
+    """At most this."""
+    strength_cv: float
+    common_cv: float
+    distribution: str
+    likeliest: list[dict[str, Any]]
+    """At most ten connections: ``a``, ``b``, ``load_ratio``, ``share`` of the cases."""
+    strength_factor_99: Optional[float]
+    """With all strengths times this they hold with probability 0.99."""
+    strength_factor_999: Optional[float]
+    """The same for 0.999."""
+
+
+class LoseOne(NamedTuple):
+    """What follows from the loss of each single part of a robot.
+
+    A loss is a dictionary with ``a`` and ``b`` of a connection, ``module``, or ``foot`` and its
+    ``direction``, and with ``verdict``, ``load_ratio_max`` and ``fallen``.
+    """
+
+    holds_all: bool
+    """Whether it is safe as it is and after each loss."""
+    losses: int
+    """How many parts there are."""
+    fatal: list[dict[str, Any]]
+    """Losses that bring it down."""
+    undecided: list[dict[str, Any]]
+    """Losses of which that is not known."""
+    worst: Optional[dict[str, Any]]
+    """The loss with the largest load ratio of those after which all is held."""
+    bounds: int
+    """How many are safe by a bound."""
+    checks: int
+    """How many took a check."""
+    seconds: float
+
+
+def reliability_of(text: str) -> Reliability:
+    return Reliability(**json.loads(text)['reliability'])
+
+
+def lose_one_of(text: str) -> LoseOne:
+    return LoseOne(**json.loads(text)['lose_one'])

@@ -1,0 +1,47 @@
+# SPDX-FileCopyrightText: The holdfast authors
+# SPDX-License-Identifier: Apache-2.0
+"""How sure a report is, and what follows from losses: against closed forms and robots without."""
+import math
+
+import pytest
+
+import holdfast
+from holdfast import Robot, Verdict
+
+
+def arm(length):
+    return Robot([[x, 0, 2] for x in range(length)], fixed=[[0, 0, 2]])
+
+
+def test_one_connection_fails_as_its_distribution_says():
+    weak = Robot([[0, 0, 1], [1, 0, 1]], fixed=[[0, 0, 1]]).check()
+    variance = math.log(1 + 0.5 ** 2)
+    z = (math.log(weak.load_ratio_max) + variance / 2) / math.sqrt(variance)
+    sure = weak.reliability(0.5)
+    assert sure.probability_fails == pytest.approx(0.5 * math.erfc(-z / math.sqrt(2)), rel=1e-9)
+    assert sure.likeliest[0]['share'] == pytest.approx(1)
+
+
+def test_an_arm_loses_all_beyond_a_connection():
+    lost = arm(4).lose_one(parts=['connection'])
+    assert not lost.holds_all
+    assert [loss['fallen'] for loss in lost.fatal] == [3, 2, 1]
+
+
+def test_losses_are_those_of_robots_without_the_module():
+    robot = holdfast.generate('cube', 3)
+    lost = robot.lose_one(parts=['module'])
+    cells = [tuple(cell) for cell in robot.cells.tolist()]
+    fatal = {tuple(loss['module']) for loss in lost.fatal}
+    for cell in cells:
+        left = Robot([other for other in cells if other != cell])
+        assert (left.check().verdict is not Verdict.SAFE) == (cell in fatal)
+
+
+def test_faults_are_named():
+    with pytest.raises(holdfast.Error, match='expected a share'):
+        arm(3).check().reliability(10)
+    with pytest.raises(holdfast.Error, match='expected lognormal'):
+        arm(3).check().reliability(0.1, law='cauchy')
+    with pytest.raises(holdfast.Error, match="expected 'connection'"):
+        arm(3).lose_one(parts=['legs'])
