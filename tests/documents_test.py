@@ -21,7 +21,7 @@ import sys
 import tempfile
 
 DOCUMENTS = ['README.md', *(f'docs/{name}.md' for name in (
-    'first_robot', 'first_plan', 'tour', 'theory', 'solver', 'distributed',
+    'first_robot', 'first_plan', 'bring_your_file', 'tour', 'theory', 'solver', 'distributed',
     'proof', 'page', 'formats', 'planning', 'evidence/solver', 'evidence/distributed',
     'evidence/planning'))]
 # These need the firmware's compilers; tests/firmware checks what they show.
