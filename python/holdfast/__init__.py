@@ -32,5 +32,5 @@ __version__ = _core.version()
 
 __all__ = ['Error', 'LoseOne', 'Moves', 'Order', 'Outcome', 'PageNotFound', 'Places',
            'Reliability', 'Remedies', 'Report', 'Robot', 'Run', 'Stage', 'Steps', 'Timings',
-           'Verdict', 'animate', 'check_many', 'families', 'foreign_formats', 'generate', 'load', 'move',
-           'next_places', 'order', 'plot_order', 'plot_steps', 'robots', 'steps', 'table']
+           'Verdict', 'animate', 'check_many', 'families', 'foreign_formats', 'generate', 'load',
+           'move', 'next_places', 'order', 'plot_order', 'plot_steps', 'robots', 'steps', 'table']

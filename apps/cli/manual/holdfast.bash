@@ -13,6 +13,8 @@ _holdfast() {
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
+        --support-z) : ;;
+        --pitch) : ;;
         --json) files=1 ;;
         --connections) : ;;
         --csv) files=1 ;;
@@ -27,16 +29,7 @@ _holdfast() {
         --up-to) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --json --connections --csv --svg --size --title --grey --view --no-legend --vtk --html --certificate --prove --limit --limit-seconds --remedies --deformed --up-to -q --quiet --bonded --threads --memory"; else files=1; fi ;;
-        --scatter) : ;;
-        --scatter-common) : ;;
-        --scatter-law) : ;;
-        --probability) : ;;
-        --lose) : ;;
-        --lose-seconds) : ;;
-        --threads) : ;;
-        --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --json --connections --csv --svg --size --title --grey --view --no-legend --vtk --html --certificate --prove --limit --limit-seconds --remedies --scatter --scatter-common --scatter-law --probability --lose-one --lose --lose-seconds -q --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --json --connections --csv --svg --size --title --grey --view --no-legend --vtk --html --certificate --prove --limit --limit-seconds --remedies -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     steps)
@@ -44,6 +37,8 @@ _holdfast() {
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
+        --support-z) : ;;
+        --pitch) : ;;
         --json) files=1 ;;
         --svg) files=1 ;;
         --size) : ;;
@@ -51,7 +46,7 @@ _holdfast() {
         --html) files=1 ;;
         --vtk) files=1 ;;
         --threads) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --json --svg --size --title --grey --html --vtk --until-unsafe --verify -q --quiet --threads"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --json --svg --size --title --grey --html --vtk --until-unsafe --verify -q --quiet --threads"; else files=1; fi ;;
       esac
       ;;
     next)
@@ -59,6 +54,8 @@ _holdfast() {
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
+        --support-z) : ;;
+        --pitch) : ;;
         --json) files=1 ;;
         --svg) files=1 ;;
         --size) : ;;
@@ -67,7 +64,7 @@ _holdfast() {
         --limit) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --json --svg --size --title --grey --view --no-legend --limit -q --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --json --svg --size --title --grey --view --no-legend --limit -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     order)
@@ -86,7 +83,9 @@ _holdfast() {
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --from --reach --source --group --reverse --seed --exact --seconds --help-seconds --threads -q --quiet -o --output --json --certificate --robot --lattice --set --allow-unknown"; else files=1; fi ;;
+        --support-z) : ;;
+        --pitch) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --from --reach --source --group --reverse --seed --exact --seconds --help-seconds --threads -q --quiet -o --output --json --certificate --robot --lattice --set --support-z --pitch --allow-unknown"; else files=1; fi ;;
       esac
       ;;
     move)
@@ -101,7 +100,9 @@ _holdfast() {
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --pivot --within --geometry-only --seed --seconds --threads -q --quiet -o --output --json --verify --robot --lattice --set --allow-unknown"; else files=1; fi ;;
+        --support-z) : ;;
+        --pitch) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --pivot --within --geometry-only --seed --seconds --threads -q --quiet -o --output --json --verify --robot --lattice --set --support-z --pitch --allow-unknown"; else files=1; fi ;;
       esac
       ;;
     simulate)
@@ -109,6 +110,8 @@ _holdfast() {
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
+        --support-z) : ;;
+        --pitch) : ;;
         --method) words="auto elimination fronts polynomial" ;;
         --link) words="v1 v2 catoms unit" ;;
         --seed) : ;;
@@ -131,7 +134,7 @@ _holdfast() {
         --size) : ;;
         --title) : ;;
         --view) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --steps --stages --next --json --connections --trace --story --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --steps --stages --next --json --connections --trace --story --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
       esac
       ;;
     emulate)
@@ -139,6 +142,8 @@ _holdfast() {
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
+        --support-z) : ;;
+        --pitch) : ;;
         --board) words="v2 v1" ;;
         --image) files=1 ;;
         --pages) files=1 ;;
@@ -157,7 +162,7 @@ _holdfast() {
         --size) : ;;
         --title) : ;;
         --view) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --board --image --pages --seed --kill --reset --cut --flip --plan --withdraw --attach --time --json --connections --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --board --image --pages --seed --kill --reset --cut --flip --plan --withdraw --attach --time --json --connections --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
       esac
       ;;
     convert)
@@ -165,7 +170,9 @@ _holdfast() {
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown"; else files=1; fi ;;
+        --support-z) : ;;
+        --pitch) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown"; else files=1; fi ;;
       esac
       ;;
     generate)
@@ -185,8 +192,10 @@ _holdfast() {
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
+        --support-z) : ;;
+        --pitch) : ;;
         --out) files=1 ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --out --no-open"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --out --no-open"; else files=1; fi ;;
       esac
       ;;
   esac

@@ -175,6 +175,7 @@ TEST(VisibleSimSolid, leaves_out_cells_that_other_elements_fill) {
 TEST(VisibleSimSolid, may_compute_its_numbers_and_have_comments) {
   EXPECT_EQ(solid("translate([-36+8*5, 2*(1+1), 8/2]) //421 sphere((1+2)*1.1);"),
             solid("translate([4,4,4]) sphere(3.3)"));
+  EXPECT_EQ(solid("union() { // 67 a ball\n sphere(2); // and no more\n }"), solid("sphere(2)"));
   EXPECT_EQ(solid("cube([1e0, 10e-1, 1.0E+0], center = false);;").size(), 8U);
 }
 

@@ -67,12 +67,22 @@ class SolidParser {
     }
   }
 
-  /// Skips blanks and comments, which end at the next blank: XML makes one of a line's end.
+  /// Whether a part begins here.
+  static bool begins_part(std::string_view text) {
+    return std::ranges::any_of(kWords, [&](const Word& word) {
+      return text.starts_with(word.name) && trimmed(text.substr(word.name.size())).starts_with('(');
+    });
+  }
+
+  /// Skips blanks and comments, which end where the next part begins, or the end of a list: XML
+  /// makes a blank of the end of a line.
   void skip_blanks() {
     rest_ = trimmed(rest_);
-    while (rest_.starts_with("//")) {
-      rest_.remove_prefix(std::min(rest_.find_first_of(" \n"), rest_.size()));
-      rest_ = trimmed(rest_);
+    if (!rest_.starts_with("//")) {
+      return;
+    }
+    while (!rest_.empty() && !rest_.starts_with('}') && !begins_part(rest_)) {
+      rest_.remove_prefix(1);
     }
   }
 

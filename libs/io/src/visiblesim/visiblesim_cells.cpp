@@ -417,8 +417,8 @@ void read_block_list(XmlReading& reading, const pugi::xml_node& list) {
       read_box(reading, child);
     } else if (name == "mesh") {
       reading.fail(child,
-                   "<mesh> in <blockList> is not supported: fill the mesh with --pitch, or write "
-                   "its modules as <block>",
+                   "<mesh> in <blockList> is not supported: read the mesh alone, with --pitch, or "
+                   "write its modules as <block>",
                    base::ErrorCode::kUnsupported);
     } else if (name != "csg") {
       reading.warn_of_unknown_child(child, kBlockListElements);
