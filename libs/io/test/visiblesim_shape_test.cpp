@@ -101,11 +101,14 @@ TEST(VisibleSimSolid, combines_others_as_sets) {
   const Cells in_a = solid(a);
   const Cells in_b = solid(b);
   Cells both;
-  std::ranges::set_union(in_a, in_b, std::inserter(both, both.end()));
+  std::set_union(in_a.begin(), in_a.end(), in_b.begin(), in_b.end(),
+                 std::inserter(both, both.end()));
   Cells rest;
-  std::ranges::set_difference(in_a, in_b, std::inserter(rest, rest.end()));
+  std::set_difference(in_a.begin(), in_a.end(), in_b.begin(), in_b.end(),
+                      std::inserter(rest, rest.end()));
   Cells common;
-  std::ranges::set_intersection(in_a, in_b, std::inserter(common, common.end()));
+  std::set_intersection(in_a.begin(), in_a.end(), in_b.begin(), in_b.end(),
+                        std::inserter(common, common.end()));
   EXPECT_EQ(solid("union() {" + a + b + "}"), both);
   EXPECT_EQ(solid("difference() {" + a + b + "}"), rest);
   EXPECT_EQ(solid("color([1,0,0]) intersection() {" + a + " color([0,1,0]) " + b + "}"), common);

@@ -126,7 +126,9 @@ std::span<const ForeignFormat> foreign_formats() { return kFormats; }
 const ForeignFormat* find_foreign_format(std::string_view text, std::string_view ending) {
   const auto* const found = std::ranges::find_if(
       kImporters, [&](const Importer& row) { return row.is_one(text, ending); });
-  return found == kImporters.end() ? nullptr : &kFormats[found - kImporters.begin()];
+  return found == kImporters.end()
+             ? nullptr
+             : &kFormats[static_cast<std::size_t>(found - kImporters.begin())];
 }
 
 bool may_have_zero_bytes(std::string_view beginning, std::string_view ending) {

@@ -317,7 +317,8 @@ std::vector<Element> JsonReader::targets(const Json& value, const JsonPlace& pla
       element = make_goal(cells.value());
     }
   }
-  std::ranges::stable_partition(list, [](const Element& element) { return !is_goal(element); });
+  std::stable_partition(list.begin(), list.end(),
+                        [](const Element& element) { return !is_goal(element); });
   return list;
 }
 
@@ -330,8 +331,8 @@ void JsonReader::expect_goal_shapes() {
   }
   const bool has_steps =
       std::ranges::any_of(document.steps, [](const Step& step) { return !step.empty(); });
-  const bool has_empty = std::ranges::any_of(
-      first, document.targets.end(), [](const Element& goal) { return goal.children.empty(); });
+  const bool has_empty = std::any_of(first, document.targets.end(),
+                                     [](const Element& goal) { return goal.children.empty(); });
   if (has_steps || has_empty || !is_goal_shape(document.modules, goal_cells(*first).value())) {
     reading_.fail({base::ErrorCode::kBadInput,
                    "targets of the format \"grid\" are shapes to reach, which overlap the modules; "
