@@ -24,7 +24,7 @@ SECTIONS = [
     ('Reference', 'What there is, complete.',
      ['commands', 'formats', 'robots', 'python_api', 'cpp_api', 'wire', 'building', 'glossary']),
     ('Explanation', 'Why it works.',
-     ['theory', 'general', 'limit', 'proof', 'solver', 'planning', 'distributed']),
+     ['theory', 'second_order', 'general', 'limit', 'proof', 'solver', 'planning', 'distributed']),
     ('Evidence', 'Measurements, each made by a command.',
      ['evidence/solver', 'evidence/distributed', 'evidence/planning', 'evidence/cluster',
       'evidence/firmware', 'evidence/visiblesim', 'evidence/page', 'evidence/python',
