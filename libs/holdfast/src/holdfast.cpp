@@ -223,6 +223,7 @@ CheckResult check(const model::Robot& robot, const CheckOptions& options) {
     verdict::Deformed deformed =
         verdict::assess_deformed(robot, std::move(result.assessment),
                                  {.factor_max = options.factor_max,
+                                  .obstacles = options.obstacles,
                                   .is_bonded = options.is_bonded,
                                   .memory_bytes_max = options.memory_bytes_max,
                                   .thread_count = options.thread_count});
@@ -235,7 +236,11 @@ CheckResult check(const model::Robot& robot, const CheckOptions& options) {
 }
 
 CheckResult check(const Structure& structure, const CheckOptions& options) {
-  return check(structure.robot, options);
+  CheckOptions own = options;
+  if (own.obstacles.empty()) {
+    own.obstacles = structure.document.extension.obstacles;
+  }
+  return check(structure.robot, own);
 }
 
 std::vector<CheckResult> check_many(std::span<const model::Robot* const> robots,

@@ -224,7 +224,8 @@ std::string load_text(const Reason& reason, Cells cells) {
                          factor_text(n[0]), model::text(cells[0]));
     case ReasonCode::kTouchesItself:
       return fmt::format("at {} of its loads {} and {} meet as it bends: what follows is not known",
-                         factor_text(n[0]), model::text(cells[0]), model::text(cells[1]));
+                         factor_text(n[0]), model::text(cells[0]),
+                         cells.size() > 1 ? model::text(cells[1]) : "an obstacle");
     case ReasonCode::kNoKnownTension:
       return fmt::format(
           "stable, and no connection is known to be pulled apart: none carries more than {:.1g} of "

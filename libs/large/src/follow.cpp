@@ -46,7 +46,7 @@ struct Stop {
 class Follower {
  public:
   Follower(const model::Robot& robot, const Options& options, System& system)
-      : robot_(robot), options_(options), system_(system), bodies_(robot) {}
+      : robot_(robot), options_(options), system_(system), bodies_(robot, options.obstacles) {}
 
   Path run();
 
@@ -132,7 +132,7 @@ Stop Follower::stop_at(Found found) {
   watch(stop, EventKind::kBreaks, state.worst ? state.load_ratio_max - 1 : -1, std::move(ends));
   Gap floor = bodies_.above_floor(state.poses);
   watch(stop, EventKind::kTouchesFloor, -floor.mm / system_.pitch(), std::move(floor.modules));
-  Gap modules = bodies_.between_modules(state.poses);
+  Gap modules = bodies_.between_bodies(state.poses);
   watch(stop, EventKind::kTouchesItself, -modules.mm / system_.pitch(), std::move(modules.modules));
   watch(stop, EventKind::kTooSoft, state.edge_strain_max - kStrainMax, {});
   return stop;

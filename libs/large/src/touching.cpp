@@ -24,6 +24,9 @@ constexpr double kNear = 0.1;
 /// face-centred lattice: 0.41).
 constexpr double kApartAtRest = 0.4;
 
+/// Bodies that are nearer than this share of the pitch touch at rest.
+constexpr double kTouching = 1e-6;
+
 /// The radius of the ball around any of the bodies, in pitches, that of a cube.
 constexpr double kRadius = 0.8661;
 
@@ -86,8 +89,12 @@ class Grid {
 
 }  // namespace
 
-Bodies::Bodies(const model::Robot& robot)
-    : robot_(robot), shape_(Shape::kCube), pitch_(robot.material().pitch_mm) {
+Bodies::Bodies(const model::Robot& robot, std::span<const model::Obstacle> obstacles)
+    : robot_(robot),
+      shape_(Shape::kCube),
+      pitch_(robot.material().pitch_mm),
+      obstacles_(obstacles.begin(), obstacles.end()),
+      obstacle_index_(obstacles_) {
   if (robot.lattice() == base::kFaceCentred) {
     shape_ = Shape::kSphere;
   } else if (robot.lattice() == base::kHexagonal) {
@@ -188,14 +195,13 @@ double Bodies::separation(const Pose& a, const Vector3& at_a, const Pose& b,
   return widest;
 }
 
-Gap Bodies::between_modules(std::span<const Pose> poses) const {
+Gap Bodies::between_bodies(std::span<const Pose> poses) const {
   Gap least{.mm = kInfinite};
   double way = 0;
   for (const Pose& pose : poses) {
-    const double turn = std::sqrt(
-        dot(mechanics::rotation_vector(pose.rotation), mechanics::rotation_vector(pose.rotation)));
-    way = std::max(way,
-                   std::sqrt(dot(pose.displacement, pose.displacement)) + kRadius * pitch_ * turn);
+    const Vector3 turn = mechanics::rotation_vector(pose.rotation);
+    way = std::max(way, std::sqrt(dot(pose.displacement, pose.displacement)) +
+                            kRadius * pitch_ * std::sqrt(dot(turn, turn)));
   }
   if (2 * way < (kApartAtRest - kNear) * pitch_) {
     return least;
@@ -204,6 +210,15 @@ Gap Bodies::between_modules(std::span<const Pose> poses) const {
   for (std::size_t i = 0; i < poses.size(); ++i) {
     centres.push_back(centre(i, poses[i]));
   }
+  add_modules(poses, centres, least);
+  if (!obstacles_.empty()) {
+    add_obstacles(poses, centres, least);
+  }
+  return least;
+}
+
+void Bodies::add_modules(std::span<const Pose> poses, std::span<const Vector3> centres,
+                         Gap& least) const {
   const double reach = (2 * kRadius + kNear) * pitch_;
   const Grid grid(centres, reach);
   const Pose rest;
@@ -211,7 +226,7 @@ Gap Bodies::between_modules(std::span<const Pose> poses) const {
     grid.for_each_near(centres[i], [&](std::size_t k) {
       const Vector3 between = difference(centres[k], centres[i]);
       if (k <= i || dot(between, between) > reach * reach ||
-          separation(rest, places_[i], rest, places_[k]) < 1e-6 * pitch_) {
+          separation(rest, places_[i], rest, places_[k]) < kTouching * pitch_) {
         return;
       }
       const double mm = separation(poses[i], centres[i], poses[k], centres[k]);
@@ -220,7 +235,45 @@ Gap Bodies::between_modules(std::span<const Pose> poses) const {
       }
     });
   }
-  return least;
+}
+
+/// The cell whose node is near a place, mm: b1 lies along x, b2 is level.
+base::Cell Bodies::cell_at(const Vector3& place) const {
+  const base::Lattice& lattice = robot_.lattice();
+  const auto basis = [&](std::size_t i, std::size_t k) {
+    return pitch_ * base::root(lattice.basis_squares[i][k]);
+  };
+  const double z = place[2] / basis(2, 2);
+  const double y = (place[1] - z * basis(2, 1)) / basis(1, 1);
+  const double x = (place[0] - z * basis(2, 0) - y * basis(1, 0)) / basis(0, 0);
+  return {static_cast<std::int32_t>(std::lround(x)), static_cast<std::int32_t>(std::lround(y)),
+          static_cast<std::int32_t>(std::lround(z))};
+}
+
+void Bodies::add_obstacles(std::span<const Pose> poses, std::span<const Vector3> centres,
+                           Gap& least) const {
+  constexpr std::int32_t kAround = 2;
+  const base::NodePlaces place(robot_.lattice(), pitch_);
+  const Pose rest;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const base::Cell middle = cell_at(centres[i]);  // Axial.
+    for (std::int32_t x = -kAround; x <= kAround; ++x) {
+      for (std::int32_t y = -kAround; y <= kAround; ++y) {
+        for (std::int32_t z = -kAround; z <= kAround; ++z) {
+          const base::Cell cell =
+              base::cell_of(robot_.lattice(), {middle.x + x, middle.y + y, middle.z + z});
+          if (obstacle_index_.find(cell) == model::CellIndex::kNone ||
+              separation(rest, places_[i], rest, place(cell)) < kTouching * pitch_) {
+            continue;
+          }
+          const double mm = separation(poses[i], centres[i], rest, place(cell));
+          if (mm < kNear * pitch_ && mm < least.mm) {
+            least = {.mm = mm, .modules = {i}};
+          }
+        }
+      }
+    }
+  }
 }
 
 }  // namespace holdfast::large

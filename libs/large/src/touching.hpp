@@ -18,20 +18,21 @@ struct Gap {
   std::vector<std::size_t> modules = {};  ///< Indices: one and the floor, or two.
 };
 
-/// The bodies of a robot's modules: cubes, spheres, discs or prisms that fill their cells. Keeps a
-/// reference to the robot.
+/// The bodies of a robot's modules, and of obstacles' cells: cubes, spheres, discs or prisms that
+/// fill their cells. Keeps references.
 class Bodies {
  public:
-  explicit Bodies(const model::Robot& robot);
+  Bodies(const model::Robot& robot, std::span<const model::Obstacle> obstacles);
 
   /// The distance of the lowest point above the floor, of the modules that are above its layer at
   /// rest; infinite without a floor or such modules.
   Gap above_floor(std::span<const mechanics::Pose> poses) const;
 
-  /// The least distance of two modules that do not touch at rest, as far as one is less than a
-  /// tenth of the pitch; infinite if none is. Bodies are taken to be apart where a plane across the
-  /// line of centres, along a face, or along an edge of both separates them.
-  Gap between_modules(std::span<const mechanics::Pose> poses) const;
+  /// The least distance of two modules, or of a module and an obstacle, that do not touch at rest,
+  /// as far as one is less than a tenth of the pitch; infinite if none is. Bodies are taken to be
+  /// apart where a plane across the line of centres, along a face, or along an edge of both
+  /// separates them.
+  Gap between_bodies(std::span<const mechanics::Pose> poses) const;
 
  private:
   using Vector3 = mechanics::Vector3;
@@ -42,11 +43,18 @@ class Bodies {
   double separation(const mechanics::Pose& a, const Vector3& at_a, const mechanics::Pose& b,
                     const Vector3& at_b) const;
   std::vector<Vector3> own_axes(const mechanics::Pose& pose) const;
+  base::Cell cell_at(const Vector3& place) const;
+  void add_modules(std::span<const mechanics::Pose> poses, std::span<const Vector3> centres,
+                   Gap& least) const;
+  void add_obstacles(std::span<const mechanics::Pose> poses, std::span<const Vector3> centres,
+                     Gap& least) const;
   Vector3 centre(std::size_t module, const mechanics::Pose& pose) const;
 
   const model::Robot& robot_;
   Shape shape_;
   double pitch_;
+  std::vector<model::Obstacle> obstacles_;
+  model::ObstacleIndex obstacle_index_;
   std::vector<Vector3> places_;  ///< Of the nodes at rest, mm, by module.
 };
 

@@ -64,9 +64,9 @@ Happening happening_of(const model::Robot& robot, const large::Event& event,
                          .numbers = {event.factor, number(event.modules[0])}}};
     case EventKind::kTouchesItself:
       return {.factor = event.factor,
-              .reason = {
-                  .code = ReasonCode::kTouchesItself,
-                  .numbers = {event.factor, number(event.modules[0]), number(event.modules[1])}}};
+              .reason = {.code = ReasonCode::kTouchesItself,
+                         .numbers = {event.factor, number(event.modules.front()),
+                                     event.modules.size() > 1 ? number(event.modules[1]) : -1}}};
     case EventKind::kTooSoft:
       break;
   }

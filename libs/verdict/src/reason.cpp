@@ -24,6 +24,9 @@ std::vector<base::Cell> cells_of(const model::Robot& robot, const Reason& reason
     case ReasonCode::kTouchesFloor:
       return {robot.modules()[static_cast<std::size_t>(reason.numbers[1])].cell};
     case ReasonCode::kTouchesItself:
+      if (reason.numbers[2] < 0) {
+        return {robot.modules()[static_cast<std::size_t>(reason.numbers[1])].cell};
+      }
       return {robot.modules()[static_cast<std::size_t>(reason.numbers[1])].cell,
               robot.modules()[static_cast<std::size_t>(reason.numbers[2])].cell};
     case ReasonCode::kMaySlip:

@@ -111,6 +111,8 @@ struct CheckOptions {
   /// judges the robot by them. Not together with a proof.
   bool is_deformed_wanted = false;
   double factor_max = large::Options{}.factor_max;
+  /// What modules may meet as the robot bends; check() of a structure takes the file's.
+  std::span<const model::Obstacle> obstacles = {};
   double limit_seconds_max = limit::LimitOptions{}.seconds_max;
   /// A function that is called while the limit load is sought, with the bounds that are known.
   std::function<void(double low, double high)> limit_progress = {};

@@ -49,7 +49,8 @@ std::string event_text(const model::Robot& robot, const large::Event& event) {
     case large::EventKind::kTouchesFloor:
       return fmt::format("{} touches the floor", cell(0));
     case large::EventKind::kTouchesItself:
-      return fmt::format("{} and {} meet", cell(0), cell(1));
+      return fmt::format("{} and {} meet", cell(0),
+                         event.modules.size() > 1 ? cell(1) : "an obstacle");
     case large::EventKind::kTooSoft:
       break;
   }

@@ -6,10 +6,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "holdfast/base/algebra.hpp"
 #include "holdfast/mechanics/large_beam.hpp"
+#include "holdfast/model/environment.hpp"
 #include "holdfast/model/robot.hpp"
 #include "holdfast/solver/linear_system.hpp"
 
@@ -99,7 +101,10 @@ struct State {
 
 /// What is wanted of a path.
 struct Options {
-  double factor_max = 2;   ///< Where the path ends; more than 0.
+  double factor_max = 2;  ///< Where the path ends; more than 0.
+  /// What modules may meet as the robot bends; a robot itself knows the facets alone that touch at
+  /// rest.
+  std::span<const model::Obstacle> obstacles = {};
   bool is_bonded = false;  ///< Facets hold like a module below would.
   std::size_t memory_bytes_max = solver::EquilibriumOptions{}.memory_bytes_max;
   int thread_count = 0;  ///< 0: as many as the machine has cores.

@@ -60,7 +60,7 @@ enum class ReasonCode : std::uint8_t {
   kCollapses,  ///< The same five, and 1 if facets tilt or are open then.
   kTooSoft,    ///< A strain at a facet's edge is so large that no linear law holds: factor, strain.
   kTouchesFloor,   ///< The factor, index of the module.
-  kTouchesItself,  ///< The factor, indices of two modules.
+  kTouchesItself,  ///< The factor, indices of two modules, or of one and -1: an obstacle.
   kMassMoves,      ///< By much of its margin: how far, mm, the margin, and what is left of it.
   /// Linear theory does not suffice: a SecondOrderDoubt, the buckling factor or 0, the largest load
   /// ratio, and the same to second order.
