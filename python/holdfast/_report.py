@@ -232,8 +232,8 @@ class Report(Judged):
         """Whether linear theory suffices: ``trusted`` (None where that is not certain).
 
         ``buckling_factor`` (None where it is above the bound ``buckling_factor_above``, or there is
-        none), ``elastic_modulus_needed_mpa``, ``mode``, ``load_ratio_max`` to second order and more,
-        by the keys of the JSON report. None where nothing holds the robot.
+        none), ``elastic_modulus_needed_mpa``, ``mode``, ``load_ratio_max`` to second order and
+        more, by the keys of the JSON report. None where nothing holds the robot.
         """
         return self._held.second_order
 

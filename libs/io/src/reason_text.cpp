@@ -144,7 +144,8 @@ std::string second_order_text(const Numbers& n) {
   switch (static_cast<verdict::SecondOrderDoubt>(n[0])) {
     case verdict::SecondOrderDoubt::kNoStiffness:
       return fmt::format(
-          "linear theory does not suffice: in the states of its feet the robot has no stiffness; {}",
+          "linear theory does not suffice: in the states of its feet the robot has no stiffness; "
+          "{}",
           kAskDeformed);
     case verdict::SecondOrderDoubt::kBuckles:
       return fmt::format(

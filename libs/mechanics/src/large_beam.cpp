@@ -403,7 +403,7 @@ Vec6<double> LargeBeam::second_order_stress(const Vec6<double>& u_p,
   const SecondOrderMotion motion = second_order_motion(axes_, length_, u_p, u_q);
   const Vector3& rho1 = motion.rho1;
   const double bowed = 0.6 * (rho1[0] * rho1[0] + rho1[1] * rho1[1]) / length_;
-  Vec6<double> stress = {-motion.rho2[0],        -motion.rho2[1], bowed - motion.rho2[2],
+  Vec6<double> stress = {-motion.rho2[0], -motion.rho2[1], bowed - motion.rho2[2],
                          -motion.psi2[0], -motion.psi2[1], -motion.psi2[2]};
   for (std::size_t i = 0; i < 6; ++i) {
     stress[i] *= stiffness_[i];
@@ -411,7 +411,7 @@ Vec6<double> LargeBeam::second_order_stress(const Vec6<double>& u_p,
   return stress;
 }
 
-/// In the frame in the middle, which turns by w_p + psi / 2, the lever to q is
+/// The frame in the middle turns by w_p + psi / 2; in it the lever to q is
 /// (a0 + h (a1 - psi1 x a0 / 4)) / 2.
 Vec6<double> LargeBeam::second_order_middle_force(const Vec6<double>& u_p, const Vec6<double>& u_q,
                                                   const Vec6<double>& first_on_q,
@@ -423,8 +423,7 @@ Vec6<double> LargeBeam::second_order_middle_force(const Vec6<double>& u_p, const
   const Vector3 f2 = sum_of(to_local(axes_, upper(second_on_q)), -1, cross(turn, f1));
   const Vector3 m2 = sum_of(to_local(axes_, lower(second_on_q)), -1, cross(turn, m1));
   const Vector3 lever1 = scaled(0.5, sum_of(motion.a1, -0.25, cross(motion.psi1, motion.a0)));
-  const Vector3 moment =
-      sum_of(sum_of(m2, 0.5, cross(motion.a0, f2)), 1, cross(lever1, f1));
+  const Vector3 moment = sum_of(sum_of(m2, 0.5, cross(motion.a0, f2)), 1, cross(lever1, f1));
   return joined(scaled(-1, f2), scaled(-1, moment));
 }
 

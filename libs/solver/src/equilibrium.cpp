@@ -94,8 +94,7 @@ void take_states(LinearSystem& system, const std::vector<mechanics::ContactState
     return;
   }
   const bool has_springs = !system.is_exact() && !is_all_stuck;
-  system.set_law(
-      {.law = ContactLaw::kUnilateral, .gamma = has_springs ? kWeakSprings : 0.0});
+  system.set_law({.law = ContactLaw::kUnilateral, .gamma = has_springs ? kWeakSprings : 0.0});
   for (std::size_t i = 0; i < contact.size(); ++i) {
     system.set_facet(i, contact[i], contact[i].pressed);
   }
@@ -205,8 +204,7 @@ void EquilibriumSolver::seek_others(Equilibrium& settled) {
 SecondOrder EquilibriumSolver::find_second_order(const Equilibrium& settled,
                                                  const SecondOrderOptions& options) {
   const std::unique_ptr<DirectSystem> beside = choice_->make_direct_beside();
-  for (LinearSystem* const system :
-       {choice_->system(), static_cast<LinearSystem*>(beside.get())}) {
+  for (LinearSystem* const system : {choice_->system(), static_cast<LinearSystem*>(beside.get())}) {
     if (system != nullptr) {
       take_states(*system, settled.contact);
     }

@@ -19,8 +19,8 @@ constexpr std::size_t kUnilateralCountMax = 6000;
 constexpr std::size_t kUnilateralFillMax = 16;
 
 /// A factorization beside multigrid takes no longer than multigrid itself with so many blocks that
-/// fill in and products of two blocks per node. Robots of many modules with so many connections each
-/// are not tried, as even the order of elimination takes long and then fills in more.
+/// fill in and products of two blocks per node. Robots of many modules with so many connections
+/// each are not tried, as even the order of elimination takes long and then fills in more.
 constexpr std::size_t kBesideFillMax = 16;
 constexpr std::size_t kBesideProductMax = 100;
 constexpr std::size_t kBesideCountTried = 5'000;

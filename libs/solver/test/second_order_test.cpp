@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Buckling factors against Euler and Greenhill [Timoshenko & Gere 1961], against all eigenvalues of
-// K and K_G by Eigen, and their invariances; second-order displacements against the equilibrium of
-// the large beam, of which they are the second term.
+// Buckling factors against Euler and Greenhill (theory of elastic stability), against all
+// eigenvalues of K and K_G by Eigen, and their invariances; second-order displacements against the
+// shortening of an arm.
 #include "holdfast/solver/second_order.hpp"
 
 #include <gtest/gtest.h>
@@ -12,10 +12,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "factorization/stressed_beams.hpp"
 #include "general_robot.hpp"
 #include "holdfast/base/rng.hpp"
 #include "holdfast/solver/equilibrium.hpp"
-#include "second_order/stressed_beams.hpp"
 #include "second_order/subspace.hpp"
 #include "seeds.hpp"
 
@@ -65,26 +65,24 @@ TEST(BucklingFactor, is_eulers_of_a_column_that_is_fixed_at_its_foot) {
   spec.gravity_m_s2 = {0, 0, -kNoWeight};
   spec.payloads = {{.cell = {0, 0, 32}, .force_n = {0, 0, -2.5}}};
   const double length = 32 * spec.material.pitch_mm;
-  const double euler = std::numbers::pi * std::numbers::pi * stiffness_nmm2(spec.material) /
-                       (4 * length * length);
+  const double euler =
+      std::numbers::pi * std::numbers::pi * stiffness_nmm2(spec.material) / (4 * length * length);
   EXPECT_NEAR(2.5 * factor_of(spec) / euler, 1, 2e-8);
 }
 
-/// One element: det(K + P K_G) = 0 of Hermite's cubics is 13 q^2 - 104 q / 3 + ... in closed form:
-/// P l^2 / (E I) = (52 - 16 sqrt(6) ...); the smaller root is 2.4859.
+/// One beam, whose determinant is a polynomial: with p = P l^2 / (E I),
+/// (12 - 6p/5)(4 - 2p/15) - (6 - p/10)^2 = 3p^2/20 - 26p/5 + 12 = 0.
 TEST(BucklingFactor, is_that_of_hermites_cubics_with_one_beam) {
   model::RobotSpec spec = column(1);
   spec.gravity_m_s2 = {0, 0, -kNoWeight};
   spec.payloads = {{.cell = {0, 0, 1}, .force_n = {0, 0, -1}}};
-  // (12 - 6p/5)(4 - 2p/15) - (6 - p/10)^2 = 0, that is 3p^2/20 - 26p/5 + 12 = 0.
   const double p = (5.2 - std::sqrt(5.2 * 5.2 - 4 * 0.15 * 12)) / (2 * 0.15);
   const double length = spec.material.pitch_mm;
   EXPECT_NEAR(factor_of(spec) * length * length / stiffness_nmm2(spec.material), p, 1e-8);
 }
 
-/// Pinned at both ends: a column between two walls that it presses with points, pushed by its own
-/// middle... is half of a cantilever's double: a column twice as long, held in the middle of its
-/// length, whose both halves carry the same load, buckles as each half does.
+/// A column that is held in the middle of its length and pressed at both ends buckles as each of
+/// its halves does: two modes with the same factor.
 TEST(BucklingFactor, is_that_of_one_half_of_a_column_that_is_fixed_in_its_middle) {
   model::RobotSpec spec;
   for (std::int32_t z = -16; z <= 16; ++z) {
@@ -96,13 +94,13 @@ TEST(BucklingFactor, is_that_of_one_half_of_a_column_that_is_fixed_in_its_middle
   spec.payloads = {{.cell = {0, 0, 16}, .force_n = {0, 0, -1}},
                    {.cell = {0, 0, -16}, .force_n = {0, 0, 1}}};
   const double length = 16 * spec.material.pitch_mm;
-  const double euler = std::numbers::pi * std::numbers::pi * stiffness_nmm2(spec.material) /
-                       (4 * length * length);
+  const double euler =
+      std::numbers::pi * std::numbers::pi * stiffness_nmm2(spec.material) / (4 * length * length);
   EXPECT_NEAR(factor_of(spec) / euler, 1, 3e-7);
 }
 
-/// Greenhill's column [1881]: q l^3 / (E I) = 7.837347. Masses at the nodes, half of one at the top,
-/// are the trapezoidal rule: second order.
+/// Greenhill's column: q l^3 / (E I) = 7.837347. Masses at the nodes, half of one at the top, are
+/// the trapezoidal rule: second order.
 TEST(BucklingFactor, is_greenhills_of_a_tower_under_its_own_weight) {
   const auto normalised = [](std::int32_t count) {
     model::RobotSpec spec = column(count);
@@ -243,6 +241,21 @@ TEST(BucklingFactor, is_bounded_from_above_by_iteration) {
   EXPECT_EQ(bound.answer, BucklingAnswer::kAtMost);
   EXPECT_GE(bound.factor, factor * (1 - 1e-6));
   EXPECT_LE(bound.factor, factor * 1.01);
+}
+
+/// A bent arm is shorter seen from above, by what its cubic's slope takes.
+TEST(SecondOrderDisplacement, shortens_an_arm_by_what_its_bending_takes) {
+  model::RobotSpec spec = column(1);
+  spec.existing[1] = {1, 0, 0};
+  spec.support_z = {};
+  spec.material.section_area_mm2 = 1e10;  // Its length does not change.
+  const Solved one = solved(spec);
+  const model::Material& m = spec.material;
+  // w' = W (L x - x^2 / 2) / (E I); half the integral of w'^2 is W^2 L^5 / (15 E^2 I^2).
+  const double ratio = model::module_weight_n(m) / stiffness_nmm2(m);
+  const double l = m.pitch_mm;
+  const double expected = -ratio * ratio * l * l * l * l * l / 15;
+  EXPECT_NEAR(one.second.displacement[1][0] / expected, 1, 1e-6);
 }
 
 TEST(LargestEigenpair, is_eigens) {

@@ -60,10 +60,10 @@ class Beams {
   Vec6<double> second(base::Direction direction, const Vec6<double>& p1, const Vec6<double>& q1,
                       const Vec6<double>& p2, const Vec6<double>& q2) const {
     const base::Direction back = base::opposite(direction);
-    const Vec6<double> second_on_q = base::sum_of(
-        linear_.end_force(back, q2, p2), 1.0, large(direction).second_order_forces(p1, q1).q);
-    return large(direction).second_order_middle_force(
-        p1, q1, linear_.end_force(back, q1, p1), second_on_q);
+    const Vec6<double> second_on_q = base::sum_of(linear_.end_force(back, q2, p2), 1.0,
+                                                  large(direction).second_order_forces(p1, q1).q);
+    return large(direction).second_order_middle_force(p1, q1, linear_.end_force(back, q1, p1),
+                                                      second_on_q);
   }
 
   /// The moment of a facet that sticks as a share of what its pressure holds; infinite without
@@ -122,13 +122,11 @@ Largest largest_of_all(const model::Robot& robot, const Beams& beams, const Disp
       const std::size_t p = base::at(pair.a);
       const std::size_t q = base::at(pair.b);
       const Vec6<double> stress = beams.first(pair.direction, u1[p], u1[q]);
-      largest.first =
-          larger(largest.first, model::load_ratio(robot.connector(pair), stress).ratio);
+      largest.first = larger(largest.first, model::load_ratio(robot.connector(pair), stress).ratio);
       largest.strain = larger(largest.strain, beams.edge_strain(stress, robot.material()));
       if (!u2.empty()) {
         Vec6<double> both = stress;
-        base::add_times(both, factor,
-                        beams.second(pair.direction, u1[p], u1[q], u2[p], u2[q]));
+        base::add_times(both, factor, beams.second(pair.direction, u1[p], u1[q], u2[p], u2[q]));
         largest.second =
             larger(largest.second, model::load_ratio(robot.connector(pair), both).ratio);
       }
@@ -190,8 +188,7 @@ void take_facets(const model::Robot& robot, const Beams& beams,
     const std::size_t module = base::at(facet.module);
     if (!facet.is_bonded() && equilibrium.contact[i] == mechanics::kStuck) {
       second.facet_reserve_max =
-          larger(beams.reserve(facet, equilibrium.displacement[module], u2[module],
-                               growth(second)),
+          larger(beams.reserve(facet, equilibrium.displacement[module], u2[module], growth(second)),
                  second.facet_reserve_max);
     }
   }
@@ -199,8 +196,7 @@ void take_facets(const model::Robot& robot, const Beams& beams,
 
 void take_motion(const Displacements& u1, SecondOrder& second) {
   for (const Vec6<double>& u : u1) {
-    second.displacement_max_mm =
-        std::max(second.displacement_max_mm, std::hypot(u[0], u[1], u[2]));
+    second.displacement_max_mm = std::max(second.displacement_max_mm, std::hypot(u[0], u[1], u[2]));
     second.rotation_max_rad = std::max(second.rotation_max_rad, std::hypot(u[3], u[4], u[5]));
   }
 }
@@ -210,8 +206,8 @@ bool has_factor_below(const SecondOrder& second, double bound) {
 }
 
 Trust trust_in(const SecondOrder& second, double load_ratio_first) {
-  const bool is_soft = second.answer == BucklingAnswer::kNoStiffness ||
-                       has_factor_below(second, kTrustedFactor);
+  const bool is_soft =
+      second.answer == BucklingAnswer::kNoStiffness || has_factor_below(second, kTrustedFactor);
   const double change = second.load_ratio_max.value_or(load_ratio_first) - load_ratio_first;
   const double allowed = std::max(kRatioChange, kRatioShare * load_ratio_first);
   const bool is_near = !(std::abs(change) > allowed) || !second.load_ratio_max;
@@ -280,28 +276,27 @@ std::optional<Reason> second_order_doubt(const Assessment& assessment) {
   } else if (!(second->facet_reserve_max <= 1) || second->leans_out) {
     doubt = SecondOrderDoubt::kTilts;
   }
-  return doubt ? std::optional(Reason{.code = ReasonCode::kSecondOrder,
-                                      .numbers = {static_cast<double>(*doubt), factor, ratio,
-                                                  bent}})
-               : std::nullopt;
+  return doubt
+             ? std::optional(Reason{.code = ReasonCode::kSecondOrder,
+                                    .numbers = {static_cast<double>(*doubt), factor, ratio, bent}})
+             : std::nullopt;
 }
 
 std::optional<Reason> second_order_warning(const Assessment& assessment) {
   const auto& second = assessment.second_order;
-  const bool is_said = second && (second->trust == Trust::kNotTrusted ||
-                                  (second->trust == Trust::kNotCertain &&
-                                   second->is_modulus_stated));
+  const bool is_said =
+      second && (second->trust == Trust::kNotTrusted ||
+                 (second->trust == Trust::kNotCertain && second->is_modulus_stated));
   if (!is_said) {
     return std::nullopt;
   }
   const double ratio = assessment.load_ratio_max.value_or(0);
-  return Reason{.code = ReasonCode::kBendingMatters,
-                .numbers = {second->trust == Trust::kNotCertain ? 1.0 : 0.0,
-                            second->buckling_factor().value_or(0), ratio,
-                            second->load_ratio_max.value_or(ratio),
-                            second->is_modulus_stated
-                                ? 0
-                                : second->elastic_modulus_needed_mpa().value_or(-1)}};
+  return Reason{
+      .code = ReasonCode::kBendingMatters,
+      .numbers = {
+          second->trust == Trust::kNotCertain ? 1.0 : 0.0, second->buckling_factor().value_or(0),
+          ratio, second->load_ratio_max.value_or(ratio),
+          second->is_modulus_stated ? 0 : second->elastic_modulus_needed_mpa().value_or(-1)}};
 }
 
 const char* name(Trust trust) {

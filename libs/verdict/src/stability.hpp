@@ -28,7 +28,7 @@ bool do_states_hold(const Situation& here, std::span<const mechanics::ContactSta
 /// none for any other.
 std::optional<Lean> find_lean(const model::Robot& robot, const Assessment& assessment);
 
-/// The same by other displacements than the equilibrium's.
+/// Finds that place by other displacements than the equilibrium's.
 std::optional<Lean> find_lean(const model::Robot& robot, const Assessment& assessment,
                               const std::vector<base::Vec6<double>>& displacement);
 

@@ -10,9 +10,9 @@
 #include "factorization/beam_forces.hpp"
 #include "factorization/block_kernels.hpp"
 #include "factorization/precise_refinement.hpp"
+#include "factorization/stressed_beams.hpp"
 #include "holdfast/base/algebra.hpp"
 #include "holdfast/base/check.hpp"
-#include "second_order/stressed_beams.hpp"
 
 namespace holdfast::solver {
 namespace {

@@ -32,8 +32,7 @@ class DirectSystem final : public LinearSystem {
   [[nodiscard]] std::optional<std::vector<std::vector<Vec>>> solve_each(
       std::span<const model::Loads> loads, double tolerance) override;
 
-  [[nodiscard]] std::optional<bool> is_definite(const StressedBeams& beams,
-                                                double factor) override;
+  [[nodiscard]] std::optional<bool> is_definite(const StressedBeams& beams, double factor) override;
 
   bool is_exact() const override { return true; }
 

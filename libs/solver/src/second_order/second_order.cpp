@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "factorization/beam_forces.hpp"
+#include "factorization/stressed_beams.hpp"
 #include "holdfast/base/rng.hpp"
-#include "second_order/stressed_beams.hpp"
 #include "second_order/subspace.hpp"
 
 namespace holdfast::solver {
@@ -23,18 +23,18 @@ using Vecs = std::vector<base::Vec6<double>>;
 constexpr double kTolerance = 1e-2;
 constexpr double kMotionTolerance = 0.1;
 
-/// Motions that are kept before a search begins again with the best of them; for large robots fewer,
-/// as each takes 150 bytes a module.
+/// Motions that are kept before a search begins again with the best of them; for large robots
+/// fewer, as each takes 150 bytes a module.
 constexpr std::size_t kMotionsMax = 40;
 constexpr std::size_t kMotionsMaxLarge = 8;
 constexpr std::size_t kLargeCount = 20'000;
 constexpr std::size_t kStepsMax = 300;
 
-/// A factor is known when what is left of the forces of its mode is this share of them: its error is
-/// about the square of that.
+/// A factor is known when what is left of the forces of its mode is this share of them: its error
+/// is about the square of that.
 constexpr double kResidualShare = 1e-7;
 
-/// By iteration: more than one step is made where the bound is not so many times what is asked, until
+/// An iteration makes more than one step where the bound is not so many times what is asked, until
 /// it changes by no more than a share.
 constexpr std::size_t kManySteps = 12;
 constexpr double kNearFactor = 10;
@@ -74,7 +74,7 @@ class Search {
   Search(LinearSystem& system, StressedBeams& beams, const SecondOrderOptions& options)
       : system_(system), beams_(beams), options_(options) {}
 
-  /// With a factorization: the factor, exactly but for rounding.
+  /// Finds the factor with a factorization, exactly but for rounding.
   Buckling find_factor() {
     Buckling buckling;
     for (std::uint64_t attempt = 0; attempt < kAttemptsMax; ++attempt) {
@@ -86,9 +86,8 @@ class Search {
       if (best.value * kFactorMax < 1) {
         return buckling;
       }
-      buckling = {.answer = BucklingAnswer::kAtMost,
-                  .factor = 1 / best.value,
-                  .mode = best.motion.x};
+      buckling = {
+          .answer = BucklingAnswer::kAtMost, .factor = 1 / best.value, .mode = best.motion.x};
       // A factor that is the smallest leaves a definite matrix below it.
       if (is_settled_ && system_.is_definite(beams_, (1 - kBelow) * buckling.factor) == true) {
         buckling.answer = BucklingAnswer::kFactor;
@@ -98,7 +97,7 @@ class Search {
     return buckling;
   }
 
-  /// By iteration: an upper bound.
+  /// Finds an upper bound by iteration.
   Buckling find_bound() {
     Buckling bound{.answer = BucklingAnswer::kAtMost,
                    .factor = std::numeric_limits<double>::infinity()};
@@ -138,8 +137,8 @@ class Search {
                          [&](const Vecs& motion) { return beams_.softening(motion); });
   }
 
-  /// Krylov's motions [Lanczos 1950], each the one under the softening of the one before. Returns
-  /// false if nothing can be solved.
+  /// Krylov's motions (Lanczos' method), each the one under the softening of the one before.
+  /// Returns false if nothing can be solved.
   bool run(std::uint64_t seed) {
     subspace_ = {};
     is_settled_ = false;

@@ -63,6 +63,7 @@ struct Eigenpair {
   double value = 0;
   std::vector<double> vector;
 };
+
 Eigenpair largest_eigenpair(const std::vector<std::vector<double>>& lower_rows);
 
 }  // namespace holdfast::solver

@@ -49,8 +49,8 @@ struct SecondOrderOptions {
 };
 
 /// The displacement u2 and the buckling factor of a robot whose `system` has the facets of a
-/// solution in their states, and u1 as its displacements by module. Beside a system that is iterated
-/// there may be a `direct` one, with the same facets in the same states, for what only a
+/// solution in their states, and u1 as its displacements by module. Beside a system that is
+/// iterated there may be a `direct` one, with the same facets in the same states, for what only a
 /// factorization says. The loads of both are forgotten.
 SecondOrder second_order(LinearSystem& system, LinearSystem* direct,
                          const std::vector<base::Vec6<double>>& displacement,

@@ -144,7 +144,7 @@ struct Assessment {
   std::optional<OpenGaps> gaps;  ///< None if no gap is too wide.
   /// Whether linear theory suffices; none if that was not asked, or nothing holds the robot.
   std::optional<SecondOrder> second_order;
-  std::optional<Lean> lean;      ///< None where the polygon does not decide, or nothing holds.
+  std::optional<Lean> lean;  ///< None where the polygon does not decide, or nothing holds.
   /// All loads could grow by this factor before the first connection breaks; none without `worst`.
   std::optional<double> weight_factor;
   LoadRange load_ratio_range;  ///< Void where load_ratio_max is.

@@ -66,8 +66,8 @@ enum class ReasonCode : std::uint8_t {
   /// ratio, and the same to second order.
   kSecondOrder,
   /// Linear theory is not trusted, but the verdict stands: 1 if that is only not certain, the
-  /// buckling factor or 0, the largest load ratio, the same to second order; and 0 where the elastic
-  /// modulus is stated, else that which would be needed, MPa, or -1 where that is not known.
+  /// buckling factor or 0, the largest load ratio, the same to second order; and 0 where the
+  /// elastic modulus is stated, else that which would be needed, MPa, or -1 if that is not known.
   kBendingMatters,
 };
 

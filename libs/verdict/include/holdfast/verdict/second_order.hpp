@@ -17,7 +17,7 @@ inline constexpr double kTrustedFactor = 10;
 
 /// The largest motion of the mode in which a robot would buckle.
 struct BucklingMode {
-  base::Cell cell;                      ///< Of the module that moves most,
+  base::Cell cell;                       ///< Of the module that moves most,
   std::array<double, 3> direction = {};  ///< and where to, or the opposite way; of length 1.
 };
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "second_order/stressed_beams.hpp"
+#include "factorization/stressed_beams.hpp"
 
 #include <cmath>
 
@@ -43,8 +43,8 @@ Vec6<double> even_part(const LinearSystem& system, const mechanics::LargeBeam& b
     Vec6<double> step{};
     base::add_times(step, sign * h, u);
     const auto deformed = beam.deformation(mechanics::moved({}, step), {});
-    base::add_to(
-        sum, beam.end_forces(deformed, base::multiply(corrector, beam.stress(deformed))).p);
+    base::add_to(sum,
+                 beam.end_forces(deformed, base::multiply(corrector, beam.stress(deformed))).p);
   }
   for (double& component : sum) {
     component /= 2 * h * h;
@@ -54,8 +54,7 @@ Vec6<double> even_part(const LinearSystem& system, const mechanics::LargeBeam& b
 
 }  // namespace
 
-StressedBeams::StressedBeams(const LinearSystem& system, const Vecs& displacement,
-                             int thread_count)
+StressedBeams::StressedBeams(const LinearSystem& system, const Vecs& displacement, int thread_count)
     : system_(system),
       displacement_(displacement),
       team_(thread_count, displacement.size()),
@@ -73,9 +72,9 @@ StressedBeams::StressedBeams(const LinearSystem& system, const Vecs& displacemen
 }
 
 EndTangent StressedBeams::blocks(const model::Connection& connection) const {
-  const Vec s = system_.beam().middle_force(connection.direction,
-                                            displacement_[base::at(connection.a)],
-                                            displacement_[base::at(connection.b)]);
+  const Vec s =
+      system_.beam().middle_force(connection.direction, displacement_[base::at(connection.a)],
+                                  displacement_[base::at(connection.b)]);
   const Bases& bases = this->bases(connection.direction);
   EndTangent sum;
   for (std::size_t k = 0; k < 6; ++k) {
@@ -111,8 +110,8 @@ StressedBeams::Vecs StressedBeams::sum_over_neighbours(const OnPair& on_pair) {
       const auto neighbours = robot().connected()[i];
       for (std::size_t d = 0; d < neighbours.size(); ++d) {
         if (neighbours[d] >= 0) {
-          base::add_to(sums[i], on_pair(i, static_cast<base::Direction>(d),
-                                        base::at(neighbours[d])));
+          base::add_to(sums[i],
+                       on_pair(i, static_cast<base::Direction>(d), base::at(neighbours[d])));
         }
       }
     }
@@ -148,9 +147,9 @@ StressedBeams::Vecs StressedBeams::second_order_forces() {
   for (const FacetState& facet : system_.facets()) {
     const Vec& u = displacement_[facet.module];
     const bool is_stuck = facet.state == mechanics::kStuck && facet.is_held;
-    base::add_to(sums[facet.module],
-                 is_stuck ? beam(facet.direction).second_order_forces(u, Vec{}).p
-                          : even_part(system_, beam(facet.direction), facet, u));
+    base::add_to(sums[facet.module], is_stuck
+                                         ? beam(facet.direction).second_order_forces(u, Vec{}).p
+                                         : even_part(system_, beam(facet.direction), facet, u));
   }
   return sums;
 }
