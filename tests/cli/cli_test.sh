@@ -358,13 +358,6 @@ expect_line out 'scaffold'
 # Wrong usage: what is wrong, and where help is; slips are seen.
 expect_exit 64
 expect_line err '^Usage: holdfast '
-expect_usage() {
-  local text=$1
-  shift
-  expect_exit 64 "$@"
-  [ "$(wc -l <err)" -le 2 ] || fault "$*: more than two lines: $(head -c 400 err)"
-  expect_line err "$text"
-}
 expect_usage "^holdfast: there is no command 'chek'; did you mean 'check'\?\$" chek
 expect_usage "^holdfast: there is no command 'x'; there are help, check, steps, " x
 expect_usage "^holdfast: there is no command 'ordr'; did you mean 'order'" help ordr

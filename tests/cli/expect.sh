@@ -21,3 +21,12 @@ expect_exit() {
 
 # expect_line FILE PATTERN   one of its lines matches
 expect_line() { grep -Eq -- "$2" "$1" || fault "no line '$2' in $1: $(head -c 400 "$1")"; }
+
+# expect_usage TEXT ARGUMENTS...   exit 64 and one or two lines, one of which matches
+expect_usage() {
+  local text=$1
+  shift
+  expect_exit 64 "$@"
+  [ "$(wc -l <err)" -le 2 ] || fault "$*: more than two lines: $(head -c 400 err)"
+  expect_line err "$text"
+}

@@ -249,13 +249,49 @@ TEST(Losses, on_all_lattices_and_supports_are_as_checked_without) {
   const std::uint64_t seeds = test::campaign(20U);
   for (std::uint64_t seed = 140; seed < 140 + seeds; ++seed) {  // 145 loses what fixes it.
     const double ratio = seed % 3 == 0 ? 0.05 : seed % 3 == 1 ? 0.3 : 0.7;
-    const model::RobotSpec spec =
-        with_ratio(test::general_robot(test::kLattices[seed % 4], seed), ratio);
+    model::RobotSpec built = test::general_robot(test::kLattices[seed % 4], seed);
+    if (seed % 5 == 1) {
+      built = test::with_friction(std::move(built), seed);
+    } else if (seed % 5 == 2) {
+      built = test::with_laws(std::move(built), seed);
+    }
+    const model::RobotSpec spec = with_ratio(built, ratio);
     expect_as_checked(spec, "seed " + std::to_string(seed), count);
   }
   EXPECT_GT(count.robots, seeds / 4);
   EXPECT_GT(count.fatal - count.falling, 0U);
   EXPECT_GT(count.checks, 0U);
+}
+
+void expect_same(const std::vector<LossAnswer>& fast, const std::vector<LossAnswer>& checked,
+                 const std::string& what) {
+  ASSERT_EQ(fast.size(), checked.size()) << what;
+  for (std::size_t i = 0; i < fast.size(); ++i) {
+    EXPECT_EQ(fast[i].loss, checked[i].loss) << what;
+    EXPECT_EQ(fast[i].verdict, checked[i].verdict) << what << " " << text(fast[i].loss);
+  }
+}
+
+TEST(Losses, of_larger_robots_are_as_by_checks_bonded_or_not) {
+  std::size_t bound_count = 0;
+  for (std::uint64_t seed = 0; seed < test::campaign(8U); ++seed) {
+    const model::RobotSpec spec = with_ratio(test::random_robot(seed, 80, 120), 0.3);
+    for (const bool is_bonded : {false, true}) {
+      LossOptions options;
+      options.equilibrium.is_bonded = is_bonded;
+      options.equilibrium.thread_count = 1;
+      const LossReport fast = lose_each(spec, options);
+      options.is_by_checks = true;
+      const LossReport checked = lose_each(spec, options);
+      const std::string what = "seed " + std::to_string(seed) + (is_bonded ? " bonded" : "");
+      expect_same(fast.fatal, checked.fatal, what);
+      expect_same(fast.undecided, checked.undecided, what);
+      EXPECT_EQ(fast.holds_all(), checked.holds_all()) << what;
+      EXPECT_EQ(checked.bound_count, 0U);
+      bound_count += fast.bound_count;
+    }
+  }
+  EXPECT_GT(bound_count, 0U);
 }
 
 /// No bound by loops is below what a check without the connection finds.

@@ -1,0 +1,65 @@
+#!/usr/bin/env bash
+# failures_test.sh PROGRAM REPOSITORY   how sure a structure holds, and what follows from losses.
+set -euo pipefail
+program=$1
+repository=$2
+# shellcheck source=tests/cli/expect.sh
+. "$(dirname "${BASH_SOURCE[0]}")/expect.sh"
+
+scenarios=$repository/scenarios
+safe=$scenarios/arm_breaks_a.json
+overload=$scenarios/arm_breaks_b.json
+unstable=$scenarios/arm_tips_c.json
+
+# The probability is the product over the connections of the same report.
+expect_exit 0 check "$safe" --scatter 20% --json sure.json
+expect_line out '^  reliability holds with probability 0[.][0-9]+ \(strengths \+-20 %\)'
+expect_line out '; \(2,1,2\)-\(3,1,2\) is the likeliest to fail, in [0-9]+ % of the cases$'
+python3 - sure.json <<'END' || fault 'the probability is not the product'
+import json
+import math
+import sys
+report = json.load(open(sys.argv[1]))
+variance = math.log(1 + 0.2 ** 2)
+holds = 1
+for connection in report['connections']:
+    if connection['load_ratio'] > 1e-9:
+        z = (math.log(connection['load_ratio']) + variance / 2) / math.sqrt(variance)
+        holds *= 1 - 0.5 * math.erfc(-z / math.sqrt(2))
+found = report['reliability']
+assert abs(found['probability_holds'] - holds) < 1e-12, (found['probability_holds'], holds)
+assert found['strength_factor_99'] < found['strength_factor_999']
+END
+expect_exit 1 check "$overload" --scatter 10%
+expect_exit 1 check "$unstable" --scatter 10%
+expect_line out '^  reliability not known'
+expect_exit 0 check "$safe" --scatter 10% --probability 0.5
+expect_exit 1 check "$safe" --scatter 20% --probability 0.999999
+expect_exit 0 check "$safe" --scatter 5% --scatter-common 5% --scatter-law weibull
+expect_line out 'each, \+-5 % together, weibull'
+
+# Faults, each in one line.
+for bad in 10 -5% 0 0% 300% x% % nan% inf% '10 percent'; do
+  expect_usage '^holdfast check: --scatter: expected a percentage from 0.01% to 100%, such as' \
+    check "$safe" --scatter "$bad"
+done
+expect_usage '^holdfast check: --scatter-common requires --scatter$' check a --scatter-common 5%
+expect_usage '^holdfast check: --scatter-law: expected lognormal, normal or weibull; found' \
+  check a --scatter 5% --scatter-law cauchy
+expect_usage '^holdfast check: --lose: expected connections, modules or feet; found' \
+  check a --lose-one --lose legs
+expect_usage '^holdfast check: --lose requires --lose-one$' check a --lose feet
+
+# What the arm cannot do without.
+expect_exit 1 check "$safe" --lose-one --lose connections
+expect_line out '^  lose one    [0-9]+ of [0-9]+ single losses bring it down$'
+expect_line out '^              without \(2,1,2\)-\(3,1,2\): [0-9]+ modules? falls?$'
+expect_exit 0 generate cube 3 -o cube.json
+expect_exit 0 check cube.json --lose-one
+expect_line out '^  lose one    safe whatever is lost: each of 90 connections, modules and feet$'
+expect_exit 2 check cube.json --lose-one --lose-seconds 0
+expect_exit 1 check "$unstable" --lose-one
+expect_line out '^  lose one    not tried'
+
+[ "$faults" -eq 0 ] || exit 1
+echo "failures: all as expected"
