@@ -61,10 +61,12 @@ TEST(OpenFaces, carry_nothing) {
 
 TEST(OpenFaces, are_all_that_are_not_listed_where_the_file_says_so) {
   const std::string listed = hanging(R"("joined": "listed", "connections": [
-      {"between": [[0,0,0],[0,0,1]]}, {"between": [[0,0,1],[0,0,2]]}, {"between": [[0,0,3],[0,0,2]]},
-      {"between": [[0,0,3],[0,0,4]]}, {"between": [[0,0,4],[1,0,4]]}, {"between": [[1,0,4],[1,0,3]]},
+      {"between": [[0,0,0],[0,0,1]]}, {"between": [[0,0,1],[0,0,2]]},
+      {"between": [[0,0,3],[0,0,2]]}, {"between": [[0,0,3],[0,0,4]]},
+      {"between": [[0,0,4],[1,0,4]]}, {"between": [[1,0,4],[1,0,3]]},
       {"between": [[1,0,3],[1,0,2]]}, {"between": [[1,0,2],[1,0,1]]},
-      {"between": [[0,0,0],[1,0,0]]}, {"between": [[1,0,0],[2,0,0]]}, {"between": [[0,0,0],[-1,0,0]]}],)");
+      {"between": [[0,0,0],[1,0,0]]}, {"between": [[1,0,0],[2,0,0]]},
+      {"between": [[0,0,0],[-1,0,0]]}],)");
   EXPECT_NEAR(*assess(listed).load_ratio_max, *assess(hanging(kOpen)).load_ratio_max, 1e-12);
 }
 

@@ -327,7 +327,7 @@ class Robot {
   bool has_payloads_ = false;
   std::vector<CarriedMass> carried_;
   std::vector<ModuleKind> kinds_;
-  /// By kind of a, kind of b, direction; then the laws that connections have of their own.
+  /// The laws by kind of a, kind of b, direction; then those that connections have of their own.
   std::vector<ConnectorLaw> connectors_;
   /// The places in the table of neighbours of connections that have a law of their own, ascending,
   /// with the index of the law.
