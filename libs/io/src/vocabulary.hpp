@@ -122,7 +122,7 @@ inline constexpr auto kBendingNames = std::to_array<std::string_view>({"square",
 inline constexpr std::string_view kBetweenKey = "between";
 inline constexpr auto kConnectionKeys =
     joined(std::to_array<std::string_view>({kBetweenKey}), kConnectorKeys);
-/// Names of which neighbours are joined: all but the open ones, or those alone that "connections" lists.
+/// Names of which neighbours are joined: all but the open ones, or those that "connections" lists.
 inline constexpr auto kJoinedNames = std::to_array<std::string_view>({"all", "listed"});
 inline constexpr auto kFloorKeys = std::to_array<std::string_view>({"friction"});
 inline constexpr auto kObstacleKeys =
