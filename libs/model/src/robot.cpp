@@ -230,6 +230,7 @@ std::optional<std::string> Robot::release(std::span<const CellPair> pairs, const
 std::optional<std::string> Robot::touch(const RobotSpec& spec) {
   const ObstacleIndex obstacles(spec.obstacles);
   const auto floor = base::index(base::down(lattice_));
+  std::size_t lost_count = 0;
   for (std::size_t i = 0; i < modules_.size(); ++i) {
     Module& module = modules_[i];
     if (!spec.obstacles.empty() && obstacles.find(module.cell) != CellIndex::kNone) {
@@ -253,6 +254,7 @@ std::optional<std::string> Robot::touch(const RobotSpec& spec) {
       }
       if (std::ranges::find(spec.lost_facets, LostFacet{module.cell, direction}) !=
           spec.lost_facets.end()) {
+        ++lost_count;
         continue;
       }
       facets_.push_back({.module = static_cast<std::int32_t>(i),
@@ -264,6 +266,10 @@ std::optional<std::string> Robot::touch(const RobotSpec& spec) {
     }
   }
   has_bonded_facets_ = std::ranges::any_of(facets_, &Facet::is_bonded);
+  if (lost_count != spec.lost_facets.size()) {
+    return fmt::format("{} facets are lost, but {} of them touch something",
+                       spec.lost_facets.size(), lost_count);
+  }
   return std::nullopt;
 }
 

@@ -189,6 +189,18 @@ TEST(Robot, releases_only_connections_and_each_once) {
                {"is below the ground, on which (0,0,0) rests"});
 }
 
+TEST(Robot, stands_on_all_facets_but_those_that_are_lost) {
+  const std::vector<Cell> row = {{0, 0, 0}, {1, 0, 0}};
+  const LostFacet first = {.cell = row[0], .direction = base::Direction::kMinusZ};
+  const Robot robot = Robot::create({.existing = row, .lost_facets = {first}}).value();
+  ASSERT_EQ(robot.facets().size(), 1U);
+  EXPECT_EQ(robot.facets()[0].module, 1);
+  EXPECT_EQ(robot.modules()[0].support, Support::kNone);
+  expect_error(
+      {.existing = row, .lost_facets = {{.cell = row[0], .direction = base::Direction::kPlusX}}},
+      {"1 facets are lost, but 0 of them touch something"});
+}
+
 TEST(Robot, rests_on_its_lowest_layer_and_wherever_it_is_fixed) {
   const auto robot = Robot::create({.existing = {{0, 0, 4}, {1, 0, 4}, {1, 0, 5}, {2, 0, 5}},
                                     .planned = {{0, 1, 4}, {3, 0, 5}},
