@@ -306,9 +306,8 @@ std::optional<std::string> Robot::take_own_connectors(const RobotSpec& spec,
     const auto direction = direction_between(lattice_, own.between);
     const std::int32_t a = index.find(own.between[0]);
     const std::int32_t b = index.find(own.between[1]);
-    const bool is_pair = direction && a != CellIndex::kNone && b != CellIndex::kNone;
-    if (!is_pair || connected_[base::at(a)][base::at(base::index(*direction))] == kNoNeighbour) {
-      return fmt::format("the pair {}-{} has a law of its own, but is not connected",
+    if (!direction || a == CellIndex::kNone || b == CellIndex::kNone) {
+      return fmt::format("the pair {}-{} has a law of its own, but is no pair of neighbours",
                          text(own.between[0]), text(own.between[1]));
     }
     const bool is_first = base::index(*direction) % 2 == 0;

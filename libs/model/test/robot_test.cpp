@@ -330,7 +330,7 @@ TEST(Robot, has_laws_of_single_connections) {
   spec.own_connectors.push_back({{Cell{2, 0, 0}, Cell{1, 0, 0}}, law});
   expect_error(spec, {"(1,0,0)-(2,0,0) has two laws of its own"});
   spec.own_connectors.back().between = {Cell{0, 0, 0}, Cell{2, 0, 0}};
-  expect_error(spec, {"(0,0,0)-(2,0,0) has a law of its own, but is not connected"});
+  expect_error(spec, {"(0,0,0)-(2,0,0) has a law of its own, but is no pair of neighbours"});
 }
 
 TEST(ForgetAbsent, takes_away_what_is_said_of_no_module) {

@@ -254,6 +254,8 @@ TEST(Losses, on_all_lattices_and_supports_are_as_checked_without) {
       built = test::with_friction(std::move(built), seed);
     } else if (seed % 5 == 2) {
       built = test::with_laws(std::move(built), seed);
+    } else if (seed % 5 == 3) {
+      built = test::with_open_faces(std::move(built), seed);
     }
     const model::RobotSpec spec = with_ratio(built, ratio);
     expect_as_checked(spec, "seed " + std::to_string(seed), count);

@@ -49,13 +49,15 @@ model::RobotSpec stronger(model::RobotSpec spec, double factor) {
     spec.material.strength_vertical_n *= factor;
     spec.material.strength_lateral_n *= factor;
   }
+  const auto scale = [&](model::ConnectorLaw& law) {
+    law.strength_n *= factor;
+    law.shear_strength_n *= factor;
+    law.torsion_strength_nmm *= factor;
+  };
   for (model::ModuleKind& kind : spec.kinds) {
-    for (model::ConnectorLaw& law : kind.connectors) {
-      law.strength_n *= factor;
-      law.shear_strength_n *= factor;
-      law.torsion_strength_nmm *= factor;
-    }
+    std::ranges::for_each(kind.connectors, scale);
   }
+  std::ranges::for_each(spec.own_connectors, scale, &model::OwnConnector::law);
   return spec;
 }
 

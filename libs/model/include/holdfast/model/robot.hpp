@@ -141,7 +141,7 @@ struct RobotSpec {
   std::vector<ModuleKind> kinds = {};    ///< Empty: default_kind() alone, which all modules are of.
   std::vector<OwnKind> own_kinds = {};   ///< All others are of kind 0.
   std::vector<OwnMass> own_masses = {};  ///< All others weigh what their kind does.
-  std::vector<OwnConnector> own_connectors = {};  ///< No pair twice, and none that is released.
+  std::vector<OwnConnector> own_connectors = {};  ///< No pair twice. Void where it is released.
   std::vector<Payload> payloads = {};
   std::vector<CarriedMass> carried = {};
   std::vector<LostFacet> lost_facets = {};  ///< Robot::facets() has all but these.
