@@ -52,6 +52,9 @@ RobotSpec changed(RobotSpec spec, RemedyKind kind, const Cell& cell) {
       erase_of(spec.payloads, cell, &model::Payload::cell);
       std::erase_if(spec.released,
                     [&](const auto& pair) { return pair[0] == cell || pair[1] == cell; });
+      std::erase_if(spec.own_connectors, [&](const model::OwnConnector& own) {
+        return own.between[0] == cell || own.between[1] == cell;
+      });
       break;
   }
   return spec;
@@ -139,6 +142,8 @@ TEST(Remedies, of_robots_of_every_lattice_are_what_checks_of_the_changed_robots_
   for (const base::Lattice& lattice : test::kLattices) {
     for (std::uint64_t seed = 0; seed < test::campaign(6U, 6U); ++seed) {
       add(test::general_robot(lattice, seed), "general_robot " + std::to_string(seed) + ": ");
+      add(test::with_open_faces(test::general_robot(lattice, seed), seed),
+          "open faces " + std::to_string(seed) + ": ");
       add(test::hard_robot(lattice, seed), "hard_robot " + std::to_string(seed) + ": ");
     }
   }
