@@ -53,6 +53,7 @@ class Follower {
  private:
   std::optional<Found> start();
   Stop stop_at(Found found);
+  std::vector<std::size_t> most_strained() const;
 
   /// The largest motion, pitches or rad.
   double way_of(const std::vector<Vec>& step) const {
@@ -118,6 +119,20 @@ void Follower::watch(Stop& stop, EventKind kind, double value,
   stop.modules[static_cast<std::size_t>(kind)] = std::move(modules);
 }
 
+/// The ends of the connection with the largest strain at its facet's edge.
+std::vector<std::size_t> Follower::most_strained() const {
+  const auto connections = robot_.connections();
+  std::size_t most = 0;
+  for (std::size_t i = 1; i < connections.size(); ++i) {
+    most = system_.edge_strain(i) > system_.edge_strain(most) ? i : most;
+  }
+  if (connections.empty()) {
+    return {};
+  }
+  const model::Connection pair = connections[most];
+  return {base::at(pair.a), base::at(pair.b)};
+}
+
 /// All that is to be known of an equilibrium, found by examined() as the last.
 Stop Follower::stop_at(Found found) {
   Stop stop;
@@ -134,7 +149,7 @@ Stop Follower::stop_at(Found found) {
   watch(stop, EventKind::kTouchesFloor, -floor.mm / system_.pitch(), std::move(floor.modules));
   Gap modules = bodies_.between_bodies(state.poses);
   watch(stop, EventKind::kTouchesItself, -modules.mm / system_.pitch(), std::move(modules.modules));
-  watch(stop, EventKind::kTooSoft, state.edge_strain_max - kStrainMax, {});
+  watch(stop, EventKind::kTooSoft, state.edge_strain_max - kStrainMax, most_strained());
   return stop;
 }
 

@@ -268,9 +268,13 @@ std::vector<Vec> System::by_node(const std::vector<Vec>& by_module) const {
   return vectors;
 }
 
+double System::edge_strain(std::size_t connection) const {
+  const Vec& e = deformations_[connection].strain;
+  return (std::abs(e[2]) + robot_.material().facet_mm / 2 * std::hypot(e[3], e[4])) / pitch_;
+}
+
 State System::state(const Configuration& here) const {
   State state{.factor = here.factor, .poses = here.poses, .facets = here.facets};
-  const double half_width = robot_.material().facet_mm / 2;
   const std::size_t count = connections_.size();
   state.middle_force.resize(count);
   state.load_ratio.resize(count);
@@ -287,9 +291,7 @@ State System::state(const Configuration& here) const {
     if (!state.worst || state.load_ratio[i] > state.load_ratio[*state.worst]) {
       state.worst = i;
     }
-    const Vec& e = deformation.strain;
-    const double strain = (std::abs(e[2]) + half_width * std::hypot(e[3], e[4])) / pitch_;
-    state.edge_strain_max = std::max(state.edge_strain_max, strain);
+    state.edge_strain_max = std::max(state.edge_strain_max, edge_strain(i));
   }
   state.load_ratio_max = state.worst ? state.load_ratio[*state.worst] : 0;
   for (const Pose& pose : here.poses) {

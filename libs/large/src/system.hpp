@@ -87,8 +87,8 @@ class System {
   /// All that is to be known of an equilibrium, of which residual() was the last call.
   State state(const Configuration& here) const;
 
-  /// The deformations of the last residual(), by connection and by facet.
-  std::span<const mechanics::BeamDeformation> connections() const { return deformations_; }
+  /// The strain at the edge of a connection's facet, of the last residual().
+  double edge_strain(std::size_t connection) const;
 
   int factor_count() const { return factor_count_; }
 

@@ -193,6 +193,17 @@ TEST(benchmark, bends_as_the_elastica) {
   }
 }
 
+// Bars a million times as stiff lengthwise as sideways: pivots keep their signs in rounding.
+TEST(benchmark, is_not_taken_for_unstable_where_scales_are_far_apart) {
+  model::RobotSpec spec = chain(16, {1, 0, 0});
+  spec.material.section_area_mm2 *= 100;
+  const double length = 16 * kPitch;
+  const double load = 10 * bending_stiffness(spec) / (length * length);
+  spec.payloads = {{.cell = spec.existing.back(), .force_n = {0, 0, -load}}};
+  const Path path = follow(robot_of(spec), {.factor_max = 1, .thread_count = 1});
+  EXPECT_EQ(path.outcome, Outcome::kReached);
+}
+
 TEST(benchmark, hangs_under_its_weight_as_the_elastica) {
   for (const double p : {5.0, 20.0}) {
     const auto [shortening, sag] = elastica(p, 1);

@@ -62,6 +62,7 @@ void BlockLu::allocate() {
   const std::size_t n = position_.size();
   diagonal_.resize(n);
   inverse_.resize(n);
+  is_positive_.resize(n);
   lower_.resize(rows_.size());
   upper_.resize(symmetry_ == Symmetry::kNone ? rows_.size() : 0);
   edge_lower_.resize(edges_.size());
@@ -128,9 +129,8 @@ void BlockLu::make_upper() {
 
 bool BlockLu::is_positive_definite() const {
   HOLDFAST_CHECK(symmetry_ == Symmetry::kSymmetric && !is_singular_);
-  return std::ranges::all_of(inverse_, [](const base::Mat6<double>& inverse) {
-    return solver::is_positive_definite(inverse);
-  });
+  return std::ranges::all_of(is_positive_,
+                             [](std::uint8_t is_positive) { return is_positive != 0; });
 }
 
 std::size_t BlockLu::factor_product_count() const {
@@ -201,6 +201,10 @@ bool BlockLu::make_column(std::size_t k, Scratch& scratch, const WaitFor& wait_f
     inverse_[k] = inverse_root(pivot, diagonal_[k]);
     factor_kernels().multiply_each(lower + begin, lower + end, transpose(inverse_[k]));
     return true;
+  }
+  if (symmetry_ == Symmetry::kSymmetric) {
+    // Not of the inverse, whose small numbers are rounding where a block's scales are far apart.
+    is_positive_[k] = solver::is_positive_definite(pivot) ? 1 : 0;
   }
   if (!invert(pivot, inverse_[k])) {
     return false;

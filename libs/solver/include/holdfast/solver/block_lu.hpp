@@ -135,6 +135,7 @@ class BlockLu {
   std::vector<std::vector<std::size_t>> column_edges_;  ///< column -> edges stored in it
 
   std::vector<base::Mat6<double>> diagonal_;  ///< A(k, k)
+  std::vector<std::uint8_t> is_positive_;     ///< Whether D(k) of a symmetric matrix is.
   std::vector<base::Mat6<double>> inverse_;   ///< D(k)^-1; of a positive matrix that of D's root.
   /// L(i, k); of a symmetric matrix L(i, k) D(k), of a positive one Cholesky's.
   std::vector<base::Mat6<double>> lower_;
