@@ -27,7 +27,7 @@ _holdfast() {
         --up-to) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --json --connections --csv --svg --size --title --grey --view --no-legend --vtk --html --certificate --prove --limit --limit-seconds --remedies --deformed --up-to -q --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --json --connections --csv --svg --size --title --grey --view --no-legend --vtk --html --certificate --prove --buckling --limit --limit-seconds --remedies --deformed --up-to -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     steps)
