@@ -180,6 +180,7 @@ TEST(SecondOrder, is_the_same_however_the_robot_lies) {
     for (std::uint64_t seed = 0; seed < test::campaign(8U); ++seed) {
       model::RobotSpec spec = test::general_robot(lattice, seed);
       spec.material.elastic_modulus_mpa = 0.5;
+      spec.material.strength_vertical_n = spec.material.strength_lateral_n;
       const auto robot = model::Robot::create(spec);
       ASSERT_TRUE(robot);
       const auto one = check(robot.value(), {.is_buckling_wanted = true}).assessment;
