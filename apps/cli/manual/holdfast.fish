@@ -23,6 +23,7 @@ complete -c holdfast -n '__fish_seen_subcommand_from check' -l vtk -r -F -d 'Wri
 complete -c holdfast -n '__fish_seen_subcommand_from check' -l html -r -F -d 'Write a page to look at in a browser, with the report [not with --deformed]'
 complete -c holdfast -n '__fish_seen_subcommand_from check' -l certificate -r -F -d 'Write the proof for holdfast-checker; implies --prove [not with --deformed]'
 complete -c holdfast -n '__fish_seen_subcommand_from check' -l prove -d 'Prove the largest load ratio; a verdict that is not proved is undecided [not with --deformed]'
+complete -c holdfast -n '__fish_seen_subcommand_from check' -l buckling -d 'Compute the buckling factor, whatever it is; without it where it is below 10'
 complete -c holdfast -n '__fish_seen_subcommand_from check' -l limit -d 'Compute the limit load, too: the factor of all loads at which the robot collapses [not with --deformed]'
 complete -c holdfast -n '__fish_seen_subcommand_from check' -l limit-seconds -x -d 'Most time for the limit load, s; then the report says what it lies between [default: 600]'
 complete -c holdfast -n '__fish_seen_subcommand_from check' -l remedies -d 'Find what would make an unsafe structure hold: one more module, a prop, a module fixed or taken away, stronger connections [not with --deformed]'

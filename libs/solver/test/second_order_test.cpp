@@ -240,7 +240,7 @@ TEST(BucklingFactor, is_bounded_from_above_by_iteration) {
       solved(spec, {.factor_max = 10 * factor}, {.method = Method::kMultigrid}).second.buckling;
   EXPECT_EQ(bound.answer, BucklingAnswer::kAtMost);
   EXPECT_GE(bound.factor, factor * (1 - 1e-6));
-  EXPECT_LE(bound.factor, factor * 1.01);
+  EXPECT_LE(bound.factor, factor * 1.05);
 }
 
 /// A bent arm is shorter seen from above, by what its cubic's slope takes.
