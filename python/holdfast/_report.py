@@ -3,6 +3,7 @@
 """What a check has found."""
 from __future__ import annotations
 
+import json
 import os
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
 
@@ -236,6 +237,20 @@ class Report(Judged):
         more, by the keys of the JSON report. None where nothing holds the robot.
         """
         return self._held.second_order
+
+    @property
+    def deformed(self) -> Optional[dict[str, Any]]:
+        """The equilibrium in the deformed shape, by the keys of the JSON report.
+
+        ``factor_critical``, ``kind`` and ``events`` of the path, an array ``path`` of it with the
+        columns factor, load_ratio_max and displacement_max_mm, and the state at the loads. None
+        without ``check(deformed=True)``, or where the robot topples unbent.
+        """
+        found: Optional[dict[str, Any]] = json.loads(self.json()).get('deformed')
+        if found is not None:
+            found['path'] = np.array([[point['factor'], point['load_ratio_max'],
+                                       point['displacement_max_mm']] for point in found['path']])
+        return found
 
     @property
     def timings(self) -> Timings:

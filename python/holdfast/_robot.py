@@ -306,6 +306,7 @@ class Robot:
 
     def check(self, *, threads: int = 0, memory: float = 4, bonded: bool = False,
               limit: bool = False, limit_seconds: float = 600, proof: bool = False,
+              deformed: bool = False, up_to: float = 2,
               progress: Progress = None) -> Report:
         """Says whether the robot holds with its planned modules attached (Eqs. 1-17).
 
@@ -321,12 +322,14 @@ class Robot:
             Also seeks the limit load: the factor beyond which no forces balance.
         proof
             Proves the largest load ratio; a verdict that is not proved becomes `undecided`.
+        deformed, up_to
+            Judges the equilibrium in the deformed shape, followed up to a factor of all loads.
         progress
             Called with (iteration, error) while a large robot is solved; True: a bar of tqdm's.
         """
         with told(progress, 'check') as tell:
             return Report._of(_core.check(self._held, threads, memory, bonded, limit,
-                                          limit_seconds, proof, tell))
+                                          limit_seconds, proof, deformed, up_to, tell))
 
     def lose_one(self, *, parts: Sequence[str] = ('connection', 'module', 'foot'),
                  seconds: float = math.inf, threads: int = 0, memory: float = 4,

@@ -29,8 +29,14 @@ namespace {
 SharedCheck check_shared(const SharedStructure& structure, const py::handle& threads,
                          const py::handle& memory, bool is_bonded, bool is_limit_wanted,
                          const py::handle& limit_seconds, bool is_proof_wanted,
+                         bool is_deformed_wanted, const py::handle& factor_max,
                          py::object progress) {
   CheckOptions options = check_options(threads, memory, is_bonded);
+  if (is_deformed_wanted && is_proof_wanted) {
+    throw Error("deformed and proof do not go together: a proof is one of linear theory");
+  }
+  options.is_deformed_wanted = is_deformed_wanted;
+  options.factor_max = number_of(factor_max, "up_to", 1, 1e6);
   options.is_limit_wanted = is_limit_wanted;
   options.limit_seconds_max =
       number_of(limit_seconds, "limit_seconds", 0, std::numeric_limits<double>::infinity());

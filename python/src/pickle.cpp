@@ -149,7 +149,8 @@ template <class Archive>
 void visit(Archive& archive, verdict::Assessment& found) {
   archive(found.verdict, found.reasons, found.stability_rule, found.simplified, found.rigid,
           found.lean, found.second_order, found.model, found.is_stable, found.connections,
-          found.load_ratio_max, found.worst, found.broken, found.gaps, found.weight_factor,
+          found.load_ratio_max, found.worst, found.broken, found.gaps_mm, found.gaps,
+          found.weight_factor,
           found.load_ratio_range, found.load_ratio_change, found.contact_model, found.several,
           found.equilibrium);
 }
@@ -170,6 +171,18 @@ void visit(Archive& archive, limit::LimitLoad& load) {
           load.program_count, load.row_count_max);
 }
 
+template <class Archive>
+void visit(Archive& archive, large::Event& event) {
+  archive(event.kind, event.factor, event.modules);
+}
+
+template <class Archive>
+void visit(Archive& archive, large::State& state) {
+  archive(state.factor, state.poses, state.facets, state.facet_force, state.middle_force,
+          state.load_ratio, state.gap_mm, state.load_ratio_max, state.worst,
+          state.displacement_max_mm, state.rotation_max_rad, state.edge_strain_max);
+}
+
 template <class Archive, class Value>
 void visit_optional(Archive& archive, std::optional<Value>& value) {
   bool is_there = value.has_value();
@@ -181,12 +194,21 @@ void visit_optional(Archive& archive, std::optional<Value>& value) {
 }
 
 template <class Archive>
+void visit(Archive& archive, large::Path& path) {
+  archive(path.outcome, path.critical, path.events, path.points, path.last, path.step_count,
+          path.solve_count);
+  visit_optional(archive, path.loaded);
+}
+
+template <class Archive>
 void visit(Archive& archive, CheckResult& result) {
   archive(result.assessment, result.seconds);
   visit_optional(archive, result.proof);
   archive(result.proof_seconds);
   visit_optional(archive, result.limit);
-  archive(result.limit_seconds);
+  archive(result.limit_seconds, result.is_deformed);
+  visit_optional(archive, result.deformed);
+  archive(result.deformed_seconds);
 }
 
 template <class Value>

@@ -146,7 +146,8 @@ def test_files(arm, tmp_path):
         report.save_svg(tmp_path / 'absent' / 'r.svg')
 
 
-@pytest.mark.parametrize('options', [{}, {'limit': True}, {'proof': True}, {'bonded': True}],
+@pytest.mark.parametrize('options', [{}, {'limit': True}, {'proof': True}, {'bonded': True},
+                                     {'deformed': True}],
                          ids=str)
 def test_copies_and_pickles_are_the_same(arm, options):
     report = arm.check(**options)
@@ -165,6 +166,26 @@ def test_a_pickle_of_a_robot_with_supports_anywhere():
     report = robot.check(limit=True)
     again = pickle.loads(pickle.dumps(report))
     assert again.json() == report.json() and again.text() == report.text()
+
+
+def test_a_column_of_two_buckles_where_it_does_by_hand():
+    """docs/second_order.md: P = 2.4860 E I / L^2 = 1.1067 W, a little more as it is compressed."""
+    column = Robot.from_text('''{"format": "holdfast-structure", "version": 1, "support_z": -1,
+        "material": {"elastic_modulus_mpa": 0.2, "moment_x_mm4": 2133.3333,
+                     "moment_y_mm4": 2133.3333},
+        "modules": [{"cell": [0, 0, 0], "fixed": true}, [0, 0, 1]]}''')
+    assert column.check().deformed is None
+    report = column.check(deformed=True, up_to=1.5)
+    found = report.deformed
+    assert report.verdict == 'safe' and found is not None
+    assert found['kind'] == 'bifurcation'
+    assert found['factor_critical'] == pytest.approx(1.1067, rel=3e-3)
+    assert found['path'].shape[1] == 3 and (np.diff(found['path'][:, 0]) > 0).all()
+    assert column.check(deformed=True, up_to=1).deformed['factor_critical'] is None
+    with pytest.raises(holdfast.Error, match='do not go together'):
+        column.check(deformed=True, proof=True)
+    with pytest.raises((holdfast.Error, ValueError), match='up_to'):
+        column.check(deformed=True, up_to=0)
 
 
 def test_many_are_the_same_as_each(root):
