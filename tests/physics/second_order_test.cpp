@@ -24,7 +24,7 @@ using verdict::Trust;
 using verdict::Verdict;
 
 std::vector<Json> soft_cases() {
-  std::ifstream file(HOLDFAST_SECOND_ORDER_FILE);
+  std::ifstream file(HOLDFAST_SOFT_FILE);
   std::vector<Json> cases;
   for (std::string line; std::getline(file, line);) {
     cases.push_back(Json::parse(line));
@@ -65,7 +65,7 @@ TEST(SecondOrderReference, has_the_same_buckling_factors_and_second_order_loads)
     SCOPED_TRACE(one["structure"]["name"].get<std::string>());
     const CheckResult result = checked_soft(one["structure"], true);
     ASSERT_TRUE(result.assessment.second_order);
-    expect_same_second_order(one["expected"], *result.assessment.second_order);
+    expect_same_second_order(one["expected"]["linear"], *result.assessment.second_order);
   }
 }
 
