@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "factorization/stressed_beams.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "holdfast/model/lattice_beam.hpp"
