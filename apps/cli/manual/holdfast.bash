@@ -13,6 +13,8 @@ _holdfast() {
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
+        --support-z) : ;;
+        --pitch) : ;;
         --json) files=1 ;;
         --connections) : ;;
         --csv) files=1 ;;
@@ -25,9 +27,15 @@ _holdfast() {
         --certificate) files=1 ;;
         --limit-seconds) : ;;
         --up-to) : ;;
+        --scatter) : ;;
+        --scatter-common) : ;;
+        --scatter-law) : ;;
+        --probability) : ;;
+        --lose) : ;;
+        --lose-seconds) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --json --connections --csv --svg --size --title --grey --view --no-legend --vtk --html --certificate --prove --buckling --limit --limit-seconds --remedies --deformed --up-to -q --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --json --connections --csv --svg --size --title --grey --view --no-legend --vtk --html --certificate --prove --buckling --limit --limit-seconds --remedies --deformed --up-to --scatter --scatter-common --scatter-law --probability --lose-one --lose --lose-seconds -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     steps)
@@ -35,6 +43,8 @@ _holdfast() {
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
+        --support-z) : ;;
+        --pitch) : ;;
         --json) files=1 ;;
         --svg) files=1 ;;
         --size) : ;;
@@ -42,7 +52,7 @@ _holdfast() {
         --html) files=1 ;;
         --vtk) files=1 ;;
         --threads) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --json --svg --size --title --grey --html --vtk --until-unsafe --verify -q --quiet --threads"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --json --svg --size --title --grey --html --vtk --until-unsafe --verify -q --quiet --threads"; else files=1; fi ;;
       esac
       ;;
     next)
@@ -50,6 +60,8 @@ _holdfast() {
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
+        --support-z) : ;;
+        --pitch) : ;;
         --json) files=1 ;;
         --svg) files=1 ;;
         --size) : ;;
@@ -58,7 +70,7 @@ _holdfast() {
         --limit) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --json --svg --size --title --grey --view --no-legend --limit -q --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --json --svg --size --title --grey --view --no-legend --limit -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     order)
@@ -77,7 +89,9 @@ _holdfast() {
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --from --reach --source --group --reverse --seed --exact --seconds --help-seconds --threads -q --quiet -o --output --json --certificate --robot --lattice --set --allow-unknown"; else files=1; fi ;;
+        --support-z) : ;;
+        --pitch) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --from --reach --source --group --reverse --seed --exact --seconds --help-seconds --threads -q --quiet -o --output --json --certificate --robot --lattice --set --support-z --pitch --allow-unknown"; else files=1; fi ;;
       esac
       ;;
     move)
@@ -92,7 +106,9 @@ _holdfast() {
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --pivot --within --geometry-only --seed --seconds --threads -q --quiet -o --output --json --verify --robot --lattice --set --allow-unknown"; else files=1; fi ;;
+        --support-z) : ;;
+        --pitch) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --pivot --within --geometry-only --seed --seconds --threads -q --quiet -o --output --json --verify --robot --lattice --set --support-z --pitch --allow-unknown"; else files=1; fi ;;
       esac
       ;;
     simulate)
@@ -100,6 +116,8 @@ _holdfast() {
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
+        --support-z) : ;;
+        --pitch) : ;;
         --method) words="auto elimination fronts polynomial" ;;
         --link) words="v1 v2 catoms unit" ;;
         --seed) : ;;
@@ -122,7 +140,7 @@ _holdfast() {
         --size) : ;;
         --title) : ;;
         --view) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --steps --stages --next --json --connections --trace --story --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --steps --stages --next --json --connections --trace --story --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
       esac
       ;;
     emulate)
@@ -130,6 +148,8 @@ _holdfast() {
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
+        --support-z) : ;;
+        --pitch) : ;;
         --board) words="v2 v1" ;;
         --image) files=1 ;;
         --pages) files=1 ;;
@@ -148,7 +168,7 @@ _holdfast() {
         --size) : ;;
         --title) : ;;
         --view) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --board --image --pages --seed --kill --reset --cut --flip --plan --withdraw --attach --time --json --connections --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --board --image --pages --seed --kill --reset --cut --flip --plan --withdraw --attach --time --json --connections --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
       esac
       ;;
     convert)
@@ -156,7 +176,9 @@ _holdfast() {
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown"; else files=1; fi ;;
+        --support-z) : ;;
+        --pitch) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown"; else files=1; fi ;;
       esac
       ;;
     generate)
@@ -176,8 +198,10 @@ _holdfast() {
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
+        --support-z) : ;;
+        --pitch) : ;;
         --out) files=1 ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --allow-unknown --out --no-open"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --out --no-open"; else files=1; fi ;;
       esac
       ;;
   esac

@@ -29,7 +29,6 @@ complete -c holdfast -n '__fish_seen_subcommand_from check' -l limit-seconds -x 
 complete -c holdfast -n '__fish_seen_subcommand_from check' -l remedies -d 'Find what would make an unsafe structure hold: one more module, a prop, a module fixed or taken away, stronger connections [not with --deformed]'
 complete -c holdfast -n '__fish_seen_subcommand_from check' -l deformed -d 'Judge the equilibrium in the deformed shape, at large rotations: does it buckle or collapse? [not with --html, --certificate, --prove, --limit, --remedies]'
 complete -c holdfast -n '__fish_seen_subcommand_from check' -l up-to -x -d 'The factor of all loads up to which the deformed shape is followed [default: 2]'
-complete -c holdfast -n '__fish_seen_subcommand_from check' -l remedies -d 'Find what would make an unsafe structure hold: one more module, a prop, a module fixed or taken away, stronger connections'
 complete -c holdfast -n '__fish_seen_subcommand_from check' -l scatter -x -d 'Find the probability that every connection holds if strengths scatter by this standard deviation, each by itself'
 complete -c holdfast -n '__fish_seen_subcommand_from check' -l scatter-common -x -d 'And by this one all together, as those of one batch do'
 complete -c holdfast -n '__fish_seen_subcommand_from check' -l scatter-law -x -d 'The distribution of strengths [default: lognormal]'
