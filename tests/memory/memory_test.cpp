@@ -78,8 +78,10 @@ std::size_t bytes_per_module(std::size_t module_count, const Work& work) {
 struct Budget {
   const char* family;
   std::size_t size;
-  std::size_t read;    ///< Bytes a module, from the file's text to the robot.
-  std::size_t assess;  ///< From the robot to the verdict, the robot itself left out.
+  std::size_t read;  ///< Bytes a module, from the file's text to the robot.
+  /// From the robot to the verdict, the robot itself left out. Of slender robots most is for the
+  /// motions in which they might buckle.
+  std::size_t assess;
 };
 
 std::ostream& operator<<(std::ostream& out, const Budget& budget) {
@@ -103,8 +105,8 @@ TEST_P(Memory, of_a_check_stays_within_its_budget) {
 INSTANTIATE_TEST_SUITE_P(
     Families, Memory,
     testing::Values(Budget{"cube", 37, 216, 222}, Budget{"scaffold", 61, 195, 168},
-                    Budget{"ball", 46, 198, 383}, Budget{"tower", 6000, 212, 360},
-                    Budget{"portal", 2002, 212, 320}, Budget{"portal", 5002, 212, 340},
+                    Budget{"ball", 46, 198, 383}, Budget{"tower", 6000, 212, 1100},
+                    Budget{"portal", 2002, 212, 1070}, Budget{"portal", 5002, 212, 1090},
                     Budget{"growth", 50000, 215, 349}),
     [](const auto& one) { return one.param.family + std::to_string(one.param.size); });
 

@@ -115,6 +115,9 @@ model::RobotSpec only(model::RobotSpec spec, const std::vector<Cell>& cells) {
   std::erase_if(spec.fixed, is_other);
   std::erase_if(spec.released,
                 [&](const auto& pair) { return is_other(pair[0]) || is_other(pair[1]); });
+  std::erase_if(spec.own_connectors, [&](const model::OwnConnector& own) {
+    return is_other(own.between[0]) || is_other(own.between[1]);
+  });
   std::erase_if(spec.own_kinds, is_of_other);
   std::erase_if(spec.own_masses, is_of_other);
   std::erase_if(spec.payloads, is_of_other);

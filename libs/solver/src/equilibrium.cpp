@@ -163,7 +163,9 @@ void EquilibriumSolver::attempt(const ContactOptions& contact, Equilibrium& resu
   LinearSystem& system = *choice_->system();
   const LinearReport before = system.report();
   system.set_law(contact);
-  const bool is_checked = options_.second_order != SecondOrderWish::kNothing;
+  const SecondOrderWish wish = options_.second_order;
+  const bool is_checked = wish != SecondOrderWish::kNothing &&
+                          (wish != SecondOrderWish::kBesideFactors || system.is_exact());
   const bool is_all_bonded = std::ranges::all_of(system.facets(), &FacetState::is_bonded);
   if (options_.is_bonded || host::all(system.robot().ranks(), is_all_bonded)) {
     BondedContact search(system, options_);

@@ -154,8 +154,9 @@ void look_beside(const Situation& here, solver::EquilibriumSolver& solver,
 
 /// The equilibrium, its loads, and what there is beside it. Loads come before others are sought, as
 /// then the second answer need not wait.
-void solve(const Situation& here, const solver::EquilibriumOptions& options,
-           Assessment& assessment) {
+void solve(const Situation& here, const solver::EquilibriumOptions& asked, Assessment& assessment) {
+  solver::EquilibriumOptions options = asked;
+  options.second_order = second_order_wish(here.robot, asked.second_order);
   solver::EquilibriumSolver solver(here.robot, options);
   find_equilibrium(here, solver, options.is_bonded, assessment);
   if (assessment.equilibrium.outcome != Outcome::kSettled) {
@@ -165,8 +166,10 @@ void solve(const Situation& here, const solver::EquilibriumOptions& options,
   if (stands_by_paper(assessment)) {
     look_beside(here, solver, options, answers, assessment);
   }
-  if (options.second_order != solver::SecondOrderWish::kNothing && assessment.is_stable &&
-      !here.robot.ranks().is_shared()) {
+  const bool is_by_multigrid = assessment.equilibrium.method == solver::Method::kMultigrid;
+  const auto left_out =
+      is_by_multigrid ? solver::SecondOrderWish::kBesideFactors : solver::SecondOrderWish::kNothing;
+  if (assessment.is_stable && options.second_order > left_out) {
     assessment.second_order =
         check_second_order(here, solver, kStableGammas[0], options, assessment);
   }

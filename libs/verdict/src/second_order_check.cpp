@@ -18,6 +18,7 @@ namespace {
 
 using base::Vec6;
 using solver::BucklingAnswer;
+using solver::SecondOrderWish;
 using Displacements = std::vector<Vec6<double>>;
 
 /// The largest load ratio may change by so much of it, or by so much.
@@ -218,7 +219,40 @@ Trust trust_in(const SecondOrder& second, double load_ratio_first) {
   return second.answer == BucklingAnswer::kAtMost ? Trust::kNotCertain : Trust::kTrusted;
 }
 
+/// Robots whose column_factor() is below this are slender.
+constexpr double kSlenderFactor = 100;
+
+/// The factor of all loads at which a column buckles that has a robot's height and as many modules
+/// in each layer as it has on average [Greenhill 1881]; an estimate, as no robot is one. Payloads
+/// count as weight.
+double column_factor(const model::Robot& robot) {
+  constexpr double kGreenhill = 7.837347;
+  const auto [low, high] =
+      std::ranges::minmax(robot.modules(), {}, [](const model::Module& one) { return one.cell.z; });
+  double force = 0;
+  for (std::size_t i = 0; i < robot.modules().size(); ++i) {
+    const base::Vec6<double> load = robot.loads()[i];
+    force += std::hypot(load[0], load[1], load[2]);
+  }
+  const double layers = static_cast<double>(high.cell.z - low.cell.z) + 1;
+  const double width = static_cast<double>(robot.modules().size()) / layers;
+  const model::Material& material = robot.material();
+  const double area = material.pitch_mm * material.pitch_mm;
+  // E I / (q l^3) of a square of `width` modules in each layer, whose weights are q l in all.
+  return kGreenhill * material.elastic_modulus_mpa * width * width * area / 12 /
+         (force * layers * layers);
+}
+
 }  // namespace
+
+SecondOrderWish second_order_wish(const model::Robot& robot, SecondOrderWish asked) {
+  if (robot.ranks().is_shared()) {
+    return SecondOrderWish::kNothing;
+  }
+  const bool is_due = asked != SecondOrderWish::kCheck || robot.is_modulus_stated() ||
+                      column_factor(robot) < kSlenderFactor;
+  return is_due ? asked : SecondOrderWish::kBesideFactors;
+}
 
 SecondOrder check_second_order(const Situation& here, solver::EquilibriumSolver& solver,
                                double gamma, const solver::EquilibriumOptions& options,

@@ -14,6 +14,12 @@ SecondOrder check_second_order(const Situation& here, solver::EquilibriumSolver&
                                double gamma, const solver::EquilibriumOptions& options,
                                const Assessment& assessment);
 
+/// What is done of the second-order check where this is asked for. Beside multigrid it costs as
+/// much as the equilibrium: kCheck becomes kBesideFactors unless somebody states the elastic
+/// modulus or the robot is about as slender as those that buckle. Of robots in parts nothing is
+/// done.
+solver::SecondOrderWish second_order_wish(const model::Robot& robot, solver::SecondOrderWish asked);
+
 /// The warning where linear theory is not trusted, but the verdict stands; none if it is.
 std::optional<Reason> second_order_warning(const Assessment& assessment);
 

@@ -25,8 +25,9 @@ enum class Method : std::uint8_t {
 /// What verdict::assess() finds out about how far linear theory goes.
 enum class SecondOrderWish : std::uint8_t {
   kNothing,
-  kCheck,   ///< Whether it suffices: the buckling factor where it is below 10.
-  kFactor,  ///< The same, and the buckling factor whatever it is.
+  kBesideFactors,  ///< As kCheck, where a factorization is at hand that makes it cheap.
+  kCheck,          ///< Whether it suffices: the buckling factor where it is below 10.
+  kFactor,         ///< The same, and the buckling factor whatever it is.
 };
 
 /// What holds for all equilibria that are sought of one robot.
