@@ -61,9 +61,10 @@ def masked(line):
 
 def renewed(text, shown, printed):
     """The document with a new output; lines that differ in a time alone stay."""
-    if any(line.strip() == '...' for line in shown) or len(shown) != len(printed):
+    if any(line.strip() == '...' for line in shown):
         return text
-    lines = [old if masked(old) == masked(new) else new for old, new in zip(shown, printed)]
+    known = {masked(line): line for line in shown}
+    lines = [known.get(masked(line), line) for line in printed]
 
     def block(these):
         return '\n'.join('    ' + line if line else '' for line in these)
