@@ -79,7 +79,7 @@ struct Budget {
   const char* family;
   std::size_t size;
   std::size_t read;  ///< Bytes a module, from the file's text to the robot.
-  /// From the robot to the verdict, the robot itself left out. Of slender robots most is for the
+  /// Bytes a module from the robot to the verdict, without the robot itself. Of slender robots most is for the
   /// motions in which they might buckle.
   std::size_t assess;
 };
