@@ -79,8 +79,8 @@ struct Budget {
   const char* family;
   std::size_t size;
   std::size_t read;  ///< Bytes a module, from the file's text to the robot.
-  /// Bytes a module from the robot to the verdict, without the robot itself. Of slender robots most is for the
-  /// motions in which they might buckle.
+  /// Bytes a module from the robot to the verdict, without the robot itself. Of slender robots most
+  /// is for the motions in which they might buckle.
   std::size_t assess;
 };
 
