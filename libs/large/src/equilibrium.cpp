@@ -3,6 +3,7 @@
 #include "equilibrium.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -53,7 +54,8 @@ double largest_way(const Configuration& a, const Configuration& b) {
   for (std::size_t i = 0; i < a.poses.size(); ++i) {
     const auto& from = a.poses[i].displacement;
     const auto& to = b.poses[i].displacement;
-    way = std::max(way, std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]));
+    const std::array<double, 3> d = {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
+    way = std::max(way, std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
   }
   return way;
 }

@@ -224,7 +224,8 @@ void Follower::lose(const Found& from, double factor, Loss loss) {
   const std::vector<Vec> mode = softest_mode(system_, from);
   double largest = 0;
   for (std::size_t node = 0; node < mode.size(); ++node) {
-    const double length = std::hypot(mode[node][0], mode[node][1], mode[node][2]);
+    const Vec& u = mode[node];
+    const double length = std::sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
     if (length > largest * (1 + 1e-6)) {
       largest = length;
       critical.module = system_.module_of(node);

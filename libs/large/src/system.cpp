@@ -46,7 +46,9 @@ Mat6<double> symmetric_part(const Mat6<double>& block) {
   return result;
 }
 
-double length_of(const mechanics::Vector3& v) { return std::hypot(v[0], v[1], v[2]); }
+double length_of(const mechanics::Vector3& v) {
+  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
 
 }  // namespace
 
@@ -270,7 +272,8 @@ std::vector<Vec> System::by_node(const std::vector<Vec>& by_module) const {
 
 double System::edge_strain(std::size_t connection) const {
   const Vec& e = deformations_[connection].strain;
-  return (std::abs(e[2]) + robot_.material().facet_mm / 2 * std::hypot(e[3], e[4])) / pitch_;
+  return (std::abs(e[2]) + robot_.material().facet_mm / 2 * std::sqrt(e[3] * e[3] + e[4] * e[4])) /
+         pitch_;
 }
 
 State System::state(const Configuration& here) const {
@@ -286,8 +289,9 @@ State System::state(const Configuration& here) const {
     const Vec stress = own.stress(deformation);
     state.middle_force[i] = own.middle_force(deformation, stress);
     state.load_ratio[i] = model::load_ratio(law, state.middle_force[i]).ratio;
-    state.gap_mm[i] = mechanics::gap_mm(law, lattice_beam_.stiffness(), stress,
-                                        [](double x, double y) { return std::hypot(x, y); });
+    state.gap_mm[i] =
+        mechanics::gap_mm(law, lattice_beam_.stiffness(), stress,
+                          [](double x, double y) { return std::sqrt(x * x + y * y); });
     if (!state.worst || state.load_ratio[i] > state.load_ratio[*state.worst]) {
       state.worst = i;
     }

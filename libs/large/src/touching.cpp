@@ -123,7 +123,7 @@ double Bodies::half_width(const Pose& pose, const Vector3& direction) const {
   if (shape_ == Shape::kCube) {
     extent = std::abs(d[0]) + std::abs(d[1]) + std::abs(d[2]);
   } else if (shape_ == Shape::kDisc) {
-    extent = std::hypot(d[0], d[2]) + std::abs(d[1]);
+    extent = std::sqrt(d[0] * d[0] + d[2] * d[2]) + std::abs(d[1]);
   } else if (shape_ == Shape::kPrism) {  // A hexagon with corners at 30 degrees, and its height.
     const double side = std::numbers::sqrt3 / 2 * std::abs(d[0]) + std::abs(d[1]) / 2;
     extent = 2 / std::numbers::sqrt3 * std::max(side, std::abs(d[1])) + std::abs(d[2]);

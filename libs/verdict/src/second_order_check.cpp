@@ -29,6 +29,9 @@ constexpr double kRatioChange = 0.002;
 constexpr double kShareLeft = 0.05;
 constexpr double kNearlyOne = 1.05;
 
+/// The length of a vector, the same everywhere, which std::hypot() is not.
+double norm_of(double x, double y, double z = 0) { return std::sqrt(x * x + y * y + z * z); }
+
 double growth(const SecondOrder& second) {
   if (second.answer == BucklingAnswer::kNone) {
     return 1;
@@ -86,7 +89,7 @@ class Beams {
   double edge_strain(const Vec6<double>& stress, const model::Material& material) const {
     const Vec6<double>& k = large_.front().stiffness();
     return (std::abs(stress[2] / k[2]) +
-            material.facet_mm / 2 * std::hypot(stress[3] / k[3], stress[4] / k[4])) /
+            material.facet_mm / 2 * norm_of(stress[3] / k[3], stress[4] / k[4])) /
            material.pitch_mm;
   }
 
@@ -147,7 +150,7 @@ std::optional<BucklingMode> largest_motion(const model::Robot& robot, const Disp
   std::optional<BucklingMode> largest;
   double length = 0;
   for (std::size_t i = 0; i < mode.size(); ++i) {
-    const double way = std::hypot(mode[i][0], mode[i][1], mode[i][2]);
+    const double way = norm_of(mode[i][0], mode[i][1], mode[i][2]);
     if (way > length * (1 + kLoadRatioTie)) {
       length = way;
       largest = {.cell = robot.modules()[i].cell,
@@ -197,8 +200,8 @@ void take_facets(const model::Robot& robot, const Beams& beams,
 
 void take_motion(const Displacements& u1, SecondOrder& second) {
   for (const Vec6<double>& u : u1) {
-    second.displacement_max_mm = std::max(second.displacement_max_mm, std::hypot(u[0], u[1], u[2]));
-    second.rotation_max_rad = std::max(second.rotation_max_rad, std::hypot(u[3], u[4], u[5]));
+    second.displacement_max_mm = std::max(second.displacement_max_mm, norm_of(u[0], u[1], u[2]));
+    second.rotation_max_rad = std::max(second.rotation_max_rad, norm_of(u[3], u[4], u[5]));
   }
 }
 
@@ -232,7 +235,7 @@ double column_factor(const model::Robot& robot) {
   double force = 0;
   for (std::size_t i = 0; i < robot.modules().size(); ++i) {
     const base::Vec6<double> load = robot.loads()[i];
-    force += std::hypot(load[0], load[1], load[2]);
+    force += norm_of(load[0], load[1], load[2]);
   }
   const double layers = static_cast<double>(high.cell.z - low.cell.z) + 1;
   const double width = static_cast<double>(robot.modules().size()) / layers;

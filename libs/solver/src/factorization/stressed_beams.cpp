@@ -32,8 +32,9 @@ Vec6<double> facet_stress(const LinearSystem& system, const FacetState& facet,
 Vec6<double> even_part(const LinearSystem& system, const mechanics::LargeBeam& beam,
                        const FacetState& facet, const Vec6<double>& u) {
   constexpr double kTurn = 1e-4;  // Errors of fourth order, and of rounding, are some 1e-8.
-  const double turn = std::max({std::abs(u[3]), std::abs(u[4]), std::abs(u[5]),
-                                std::hypot(u[0], u[1], u[2]) / beam.length()});
+  const double turn =
+      std::max({std::abs(u[3]), std::abs(u[4]), std::abs(u[5]),
+                std::sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]) / beam.length()});
   if (turn == 0) {
     return {};
   }
