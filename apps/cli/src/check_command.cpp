@@ -89,8 +89,8 @@ class CheckRun {
       return;
     }
     Structure structure = std::move(loaded).value();
-    const bool is_document_needed = !options_.html.empty() || options_.are_remedies_wanted ||
-                                    options_.lose_one.is_wanted;
+    const bool is_document_needed =
+        !options_.html.empty() || options_.are_remedies_wanted || options_.lose_one.is_wanted;
     if (!is_document_needed) {
       structure.document.modules = std::vector<io::ModuleEntry>();
     }

@@ -160,8 +160,8 @@ inline constexpr auto kRowAttributes =
     std::to_array<std::string_view>({"line", "plane", "values", "color", kOrientation, "isTarget"});
 inline constexpr auto kBoxAttributes =
     std::to_array<std::string_view>({"boxOrigin", "boxSize", "color", kOrientation});
-inline constexpr auto kSolidAttributes = std::to_array<std::string_view>(
-    {"content", "boundingBox", "offset", "color", kOrientation});
+inline constexpr auto kSolidAttributes =
+    std::to_array<std::string_view>({"content", "boundingBox", "offset", "color", kOrientation});
 inline constexpr auto kTargetFormats =
     std::to_array<std::string_view>({"grid", "csg", "relativeGrid", "surface"});
 

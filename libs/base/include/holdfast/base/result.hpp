@@ -24,7 +24,7 @@ enum class ErrorCode : std::uint8_t {
 struct Error {
   ErrorCode code = ErrorCode::kBadInput;
   std::string message = {};
-  std::string where = {};  ///< File, line, or path inside a document; may be empty.
+  std::string where = {};               ///< File, line, or path inside a document; may be empty.
   std::vector<std::string> notes = {};  ///< What a reader had noted before it met the error.
 };
 
