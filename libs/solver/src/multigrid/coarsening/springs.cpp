@@ -13,7 +13,7 @@ namespace {
 
 using Mat3 = std::array<std::array<double, 3>, 3>;
 
-Mat3 inverse_of(const Mat3& m) {
+Mat3 inverse_of_three(const Mat3& m) {
   Mat3 cofactor;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
@@ -47,7 +47,7 @@ Mat3 rotational_compliance(const Mat& c) {
       left[i][j] = c.values[3 + i + 6 * (3 + j)];
     }
   }
-  const Mat3 free = inverse_of(uu);
+  const Mat3 free = inverse_of_three(uu);
   for (std::size_t j = 0; j < 3; ++j) {
     std::array<double, 3> follows{};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -57,7 +57,7 @@ Mat3 rotational_compliance(const Mat& c) {
       left[i][j] -= ut[0][i] * follows[0] + ut[1][i] * follows[1] + ut[2][i] * follows[2];
     }
   }
-  return inverse_of(left);
+  return inverse_of_three(left);
 }
 
 /// The columns of t gain those of u times -[a]x.
