@@ -10,6 +10,7 @@
 #include <map>
 #include <string>
 
+#include "holdfast/plan/robot_state.hpp"
 #include "json/json_values.hpp"
 #include "vocabulary.hpp"
 
@@ -56,21 +57,6 @@ std::optional<double> value_for(const ConnectorParameter& parameter, std::size_t
   return index < parameter.values.size() ? parameter.values[index] : std::nullopt;
 }
 
-/// The direction from the first cell of a pair to the second; none if they are no neighbours.
-std::optional<base::Direction> direction_of(const base::Lattice& lattice,
-                                            const model::CellPair& pair) {
-  for (const base::Direction direction : base::directions(lattice)) {
-    if (base::neighbour(lattice, pair[0], direction) == pair[1]) {
-      return direction;
-    }
-  }
-  return std::nullopt;
-}
-
-model::CellPair ascending(const model::CellPair& pair) {
-  return pair[0] < pair[1] ? pair : model::CellPair{pair[1], pair[0]};
-}
-
 /// Checks the pairs that a document names, and knows which they are.
 class NamedPairs {
  public:
@@ -87,12 +73,12 @@ class NamedPairs {
             place.pointer());
       }
     }
-    if (!direction_of(lattice_, pair)) {
+    if (!plan::direction_between(lattice_, pair[0], pair[1])) {
       return base::bad_input(
           fmt::format("{}: expected two modules whose faces touch, found two that do not", text),
           place.pointer());
     }
-    if (!pairs_.insert(ascending(pair)).second) {
+    if (!pairs_.insert(plan::ordered(pair)).second) {
       return base::bad_input(
           fmt::format("{}: expected each pair once in \"open\" and \"connections\" together, "
                       "found it twice",
@@ -102,7 +88,7 @@ class NamedPairs {
     return std::nullopt;
   }
 
-  bool contains(const model::CellPair& pair) const { return pairs_.contains(ascending(pair)); }
+  bool contains(const model::CellPair& pair) const { return pairs_.contains(plan::ordered(pair)); }
 
  private:
   const base::Lattice& lattice_;
@@ -137,7 +123,8 @@ void add_laws(const Document& document, const std::vector<model::ModuleKind>& ki
     if (connectors == Connectors{} || !cells.contains(between[0]) || !cells.contains(between[1])) {
       continue;
     }
-    const auto direction = base::at(base::index(*direction_of(extension.lattice, between)));
+    const auto direction =
+        base::at(base::index(*plan::direction_between(extension.lattice, between[0], between[1])));
     model::ConnectorLaw law = model::weaker(kind_at(between[0]).connectors[direction],
                                             kind_at(between[1]).connectors[direction ^ 1U]);
     apply(connectors, extension.lattice, direction, law);
@@ -206,13 +193,15 @@ std::optional<base::Error> add_connections(const Document& document,
     if (auto error = named.take(extension.open[i], open.at(i))) {
       return error;
     }
-    released.insert(ascending(extension.open[i]));
+    released.insert(plan::ordered(extension.open[i]));
   }
-  for (const base::Cell& cell : cells) {
-    for (const base::Direction direction : base::directions(extension.lattice)) {
-      const model::CellPair pair = {cell, base::neighbour(extension.lattice, cell, direction)};
-      if (extension.joins_listed && cells.contains(pair[1]) && !listed.contains(pair)) {
-        released.insert(ascending(pair));
+  if (extension.joins_listed) {
+    for (const base::Cell& cell : cells) {
+      for (const base::Direction direction : base::directions(extension.lattice)) {
+        const model::CellPair pair = {cell, base::neighbour(extension.lattice, cell, direction)};
+        if (cells.contains(pair[1]) && !listed.contains(pair)) {
+          released.insert(plan::ordered(pair));
+        }
       }
     }
   }
