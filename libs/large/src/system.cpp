@@ -73,16 +73,12 @@ System::System(const model::Robot& robot, const Options& options)
     : robot_(robot),
       lattice_beam_(model::beam_section(robot.material()), robot.lattice()),
       law_(exact_law(robot, lattice_beam_)),
+      beams_(lattice_beam_, robot.lattice(), robot.material().pitch_mm),
       pitch_(robot.material().pitch_mm),
       is_bonded_(options.is_bonded),
       thread_count_(options.thread_count),
       team_(options.thread_count, robot.connections().size()),
       node_of_module_(robot.modules().size(), -1) {
-  for (const base::Direction direction : base::facet_directions(robot.lattice())) {
-    beams_[static_cast<std::size_t>(base::index(direction))] = {
-        lattice_beam_.stiffness(), pitch_,
-        model::rotation_along<double>(robot.lattice(), direction)};
-  }
   for (std::size_t i = 0; i < node_of_module_.size(); ++i) {
     if (robot.modules()[i].support == model::Support::kFixed) {
       continue;

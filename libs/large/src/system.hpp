@@ -10,6 +10,7 @@
 
 #include "holdfast/host/team.hpp"
 #include "holdfast/large/follow.hpp"
+#include "holdfast/mechanics/large_beams.hpp"
 #include "holdfast/model/lattice_beam.hpp"
 #include "holdfast/solver/block_lu.hpp"
 
@@ -97,9 +98,7 @@ class System {
 
   bool make_factors(const Options& options);
 
-  const mechanics::LargeBeam& beam(base::Direction direction) const {
-    return beams_[static_cast<std::size_t>(base::index(direction))];
-  }
+  const mechanics::LargeBeam& beam(base::Direction direction) const { return beams_[direction]; }
 
   mechanics::BeamDeformation facet_deformation(const Configuration& here, std::size_t facet) const;
   Vec facet_stress(const Configuration& here, std::size_t facet,
@@ -110,7 +109,7 @@ class System {
   const model::Robot& robot_;
   model::LatticeBeam<double> lattice_beam_;
   solver::FacetLaw<double> law_;
-  std::array<mechanics::LargeBeam, base::Lattice::kDirectionCountMax + 1> beams_;
+  mechanics::LargeBeams beams_;
   double pitch_;
   bool is_bonded_;
   int thread_count_;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "holdfast/host/team.hpp"
-#include "holdfast/mechanics/large_beam.hpp"
+#include "holdfast/mechanics/large_beams.hpp"
 #include "holdfast/model/lattice_beam.hpp"
 #include "stability.hpp"
 
@@ -47,13 +47,7 @@ class Beams {
         facet_(mechanics::ground_facet(model::beam_section(robot.material()),
                                        2 * robot.foot_half_width_mm(), 0.0,
                                        mechanics::ContactLaw::kUnilateral)),
-        large_(base::Lattice::kDirectionCountMax + 1) {
-    for (const base::Direction direction : base::facet_directions(robot.lattice())) {
-      large_[static_cast<std::size_t>(base::index(direction))] = {
-          linear_.stiffness(), robot.material().pitch_mm,
-          mechanics::rotation_along<double>(robot.lattice(), direction)};
-    }
-  }
+        large_(linear_, robot.lattice(), robot.material().pitch_mm) {}
 
   Vec6<double> first(base::Direction direction, const Vec6<double>& p,
                      const Vec6<double>& q) const {
@@ -65,9 +59,9 @@ class Beams {
                       const Vec6<double>& p2, const Vec6<double>& q2) const {
     const base::Direction back = base::opposite(direction);
     const Vec6<double> second_on_q = base::sum_of(linear_.end_force(back, q2, p2), 1.0,
-                                                  large(direction).second_order_forces(p1, q1).q);
-    return large(direction).second_order_middle_force(p1, q1, linear_.end_force(back, q1, p1),
-                                                      second_on_q);
+                                                  large_[direction].second_order_forces(p1, q1).q);
+    return large_[direction].second_order_middle_force(p1, q1, linear_.end_force(back, q1, p1),
+                                                       second_on_q);
   }
 
   /// The moment of a facet that sticks as a share of what its pressure holds; infinite without
@@ -79,7 +73,7 @@ class Beams {
     };
     Vec6<double> stress = trial(u1);
     base::add_times(stress, factor, trial(u2));
-    base::add_times(stress, factor, large(facet.direction).second_order_stress(u1, {}));
+    base::add_times(stress, factor, large_[facet.direction].second_order_stress(u1, {}));
     const double moment = std::max(std::abs(stress[3]), std::abs(stress[4]));
     const double held = -stress[2] * facet_.half_width;
     return held > 0 ? moment / held : std::numeric_limits<double>::infinity();
@@ -87,20 +81,16 @@ class Beams {
 
   /// The strain at the edge of a facet under a stress.
   double edge_strain(const Vec6<double>& stress, const model::Material& material) const {
-    const Vec6<double>& k = large_.front().stiffness();
+    const Vec6<double>& k = large_[base::Direction::kPlusX].stiffness();
     return (std::abs(stress[2] / k[2]) +
             material.facet_mm / 2 * norm_of(stress[3] / k[3], stress[4] / k[4])) /
            material.pitch_mm;
   }
 
  private:
-  const mechanics::LargeBeam& large(base::Direction direction) const {
-    return large_[static_cast<std::size_t>(base::index(direction))];
-  }
-
   model::LatticeBeam<double> linear_;
   mechanics::GroundFacet<double> facet_;
-  std::vector<mechanics::LargeBeam> large_;
+  mechanics::LargeBeams large_;
 };
 
 /// The largest numbers of some connections.

@@ -60,15 +60,13 @@ StressedBeams::StressedBeams(const LinearSystem& system, const Vecs& displacemen
     : system_(system),
       displacement_(displacement),
       team_(thread_count, displacement.size()),
-      beams_(base::Lattice::kDirectionCountMax + 1),
+      beams_(system.beam(), system.robot().lattice(), system.robot().material().pitch_mm),
       bases_(base::Lattice::kDirectionCountMax + 1) {
-  const model::Robot& robot = system.robot();
-  for (const base::Direction direction : base::facet_directions(robot.lattice())) {
-    const auto i = static_cast<std::size_t>(base::index(direction));
-    beams_[i] = {system.beam().stiffness(), robot.material().pitch_mm,
-                 mechanics::rotation_along<double>(robot.lattice(), direction)};
+  for (const base::Direction direction : base::facet_directions(system.robot().lattice())) {
+    Bases& bases = bases_[static_cast<std::size_t>(base::index(direction))];
     for (int k = 0; k < 6; ++k) {
-      bases_[i][static_cast<std::size_t>(k)] = beams_[i].geometric_stiffness(base::unit<double>(k));
+      bases[static_cast<std::size_t>(k)] =
+          beams_[direction].geometric_stiffness(base::unit<double>(k));
     }
   }
 }
@@ -144,14 +142,14 @@ StressedBeams::Vecs StressedBeams::softening(const Vecs& x) {
 
 StressedBeams::Vecs StressedBeams::second_order_forces() {
   Vecs sums = sum_over_neighbours([&](std::size_t p, base::Direction direction, std::size_t q) {
-    return beam(direction).second_order_forces(displacement_[p], displacement_[q]).p;
+    return beams_[direction].second_order_forces(displacement_[p], displacement_[q]).p;
   });
   for (const FacetState& facet : system_.facets()) {
     const Vec& u = displacement_[facet.module];
     const bool is_stuck = facet.state == mechanics::kStuck && facet.is_held;
     base::add_to(sums[facet.module], is_stuck
-                                         ? beam(facet.direction).second_order_forces(u, Vec{}).p
-                                         : even_part(system_, beam(facet.direction), facet, u));
+                                         ? beams_[facet.direction].second_order_forces(u, Vec{}).p
+                                         : even_part(system_, beams_[facet.direction], facet, u));
   }
   return sums;
 }

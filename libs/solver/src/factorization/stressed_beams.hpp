@@ -7,7 +7,7 @@
 
 #include "holdfast/base/algebra.hpp"
 #include "holdfast/host/team.hpp"
-#include "holdfast/mechanics/large_beam.hpp"
+#include "holdfast/mechanics/large_beams.hpp"
 #include "holdfast/model/robot.hpp"
 #include "holdfast/solver/linear_system.hpp"
 
@@ -46,18 +46,14 @@ class StressedBeams {
     return bases_[static_cast<std::size_t>(base::index(direction))];
   }
 
-  const mechanics::LargeBeam& beam(base::Direction direction) const {
-    return beams_[static_cast<std::size_t>(base::index(direction))];
-  }
-
   template <class OnPair>
   Vecs sum_over_neighbours(const OnPair& on_pair);
 
   const LinearSystem& system_;
   const Vecs& displacement_;
   host::Team team_;
-  std::vector<mechanics::LargeBeam> beams_;  ///< By direction.
-  std::vector<Bases> bases_;                 ///< By direction.
+  mechanics::LargeBeams beams_;
+  std::vector<Bases> bases_;  ///< By direction.
 };
 
 }  // namespace holdfast::solver

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "holdfast/base/lattice.hpp"
+#include "holdfast/mechanics/large_beam.hpp"
+#include "holdfast/mechanics/lattice_beam.hpp"
+
+namespace holdfast::mechanics {
+
+/// The beams of a lattice for large motion, one for each of base::facet_directions(). `linear` is
+/// the same beam for small motion; the pitch is in mm.
+class LargeBeams {
+ public:
+  LargeBeams(const LatticeBeam<double>& linear, const base::Lattice& lattice, double pitch_mm) {
+    for (const base::Direction direction : base::facet_directions(lattice)) {
+      beams_[static_cast<std::size_t>(base::index(direction))] = {
+          linear.stiffness(), pitch_mm, rotation_along<double>(lattice, direction)};
+    }
+  }
+
+  const LargeBeam& operator[](base::Direction direction) const {
+    return beams_[static_cast<std::size_t>(base::index(direction))];
+  }
+
+ private:
+  std::array<LargeBeam, base::Lattice::kDirectionCountMax + 1> beams_;
+};
+
+}  // namespace holdfast::mechanics
