@@ -91,7 +91,7 @@ TEST(ErrorKind, is_a_bound_just_where_balance_alone_gives_the_forces) {
       }
     }
   }
-  EXPECT_GT(count, test::campaign(80, 10));
+  EXPECT_GE(count, test::least(80, 10));
 }
 
 /// The difference is none where robot and exact solver say the same, by the same law and as far as
@@ -125,7 +125,7 @@ TEST(Difference, is_named_wherever_robot_and_exact_solver_answer_otherwise) {
       count += difference == Difference::kNone ? 0 : 1;
     }
   }
-  EXPECT_GT(count, test::campaign(4));
+  EXPECT_GE(count, test::least(4));
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ TEST(FaultCampaign, a_silent_module_or_link_never_leads_to_a_wrong_safe) {
     }
   }
   // Most faults come while the verdict is still open.
-  EXPECT_GT(undecided_count, test::campaign(300, 8));
+  EXPECT_GE(undecided_count, test::least(300, 8));
 }
 
 /// A module that is taken off is no longer part of the robot: the answer is that of what is left.

@@ -40,7 +40,7 @@ TEST(Held, planned_modules_bear_what_the_exact_solver_says_whatever_is_fixed) {
       }
     }
   }
-  EXPECT_GT(count, test::campaign(1000, 12));
+  EXPECT_GE(count, test::least(1000, 12));
 }
 
 /// A foot of a planned cube beside three fixed ones tilts (moments of inertia ten times those of

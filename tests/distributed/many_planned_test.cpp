@@ -38,7 +38,7 @@ TEST(ManyPlanned, random_robots_are_decided_in_few_sweeps_with_fronts) {
       sweeps.push_back(comparison.sweeps());
     }
   }
-  ASSERT_GT(sweeps.size(), test::campaign(100U, 10U));
+  ASSERT_GE(sweeps.size(), test::least(100U, 10U));
   std::ranges::sort(sweeps);
   EXPECT_LE(sweeps[sweeps.size() * 98 / 100], 30);
   EXPECT_LE(sweeps.back(), 60);

@@ -25,8 +25,8 @@ TEST_P(PlanCampaign, every_verdict_is_that_of_the_robot_and_its_plan_in_the_end)
   for (std::uint64_t seed = 0; seed < kRobots; ++seed) {
     test::run_plan_case(what, seed, tally);
   }
-  EXPECT_GE(tally.runs, test::campaign(3, 2));
-  EXPECT_GT(tally.right, test::campaign(25, 2));
+  EXPECT_GE(tally.runs, test::least(3, 2));
+  EXPECT_GE(tally.right, test::least(25, 2));
   EXPECT_EQ(tally.wrong_safe, 0);
   EXPECT_EQ(tally.wrong_otherwise, 0);
   EXPECT_EQ(tally.none, 0);

@@ -18,7 +18,7 @@ TEST(Storm, leads_to_no_wrong_verdict) {
     test::run_storm(seed, tally);
     EXPECT_EQ(tally.faults(), before) << "storms " << seed << " " << seed + 1;
   }
-  EXPECT_GT(tally.whole_runs, test::campaign(40, 8));
+  EXPECT_GE(tally.whole_runs, test::least(40, 8));
   // What is in the end would take one fresh start; what came before may be in the middle of one,
   // and a neighbour that is gone is first missed.
   EXPECT_LT(tally.latest, 3);

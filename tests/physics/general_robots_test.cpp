@@ -37,7 +37,7 @@ TEST_P(GeneralRobots, are_answered_with_reasons_and_balance) {
     undecided_count += is_undecided && !are_laws_at_odds ? 1 : 0;
   }
   // The generator must reach robots that stand, or the test above says little.
-  EXPECT_GT(settled_count, test::campaign(15, 5));
+  EXPECT_GE(settled_count, test::least(15, 5));
   EXPECT_LT(20 * undecided_count, static_cast<int>(kRobotCount));
 }
 
@@ -67,7 +67,7 @@ TEST_P(GeneralRobots, have_the_same_answer_when_all_is_turned) {
       compared_count += checked.is_compared ? 1 : 0;
     }
   }
-  EXPECT_GT(compared_count, test::campaign(10, 5));
+  EXPECT_GE(compared_count, test::least(10, 5));
 }
 
 TEST_P(GeneralRobots, that_are_hard_have_the_same_answer_when_all_is_turned) {

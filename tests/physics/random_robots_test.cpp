@@ -34,8 +34,8 @@ TEST(RandomRobots, are_always_decided_and_both_stability_checks_agree) {
     unstable_count += assessment.is_stable ? 0 : 1;
   }
   // The generator must reach the hard cases, or the test above says little.
-  EXPECT_GT(unilateral_count, test::campaign(20, 8));
-  EXPECT_GT(unstable_count, test::campaign(200, 8));
+  EXPECT_GE(unilateral_count, test::least(20, 8));
+  EXPECT_GE(unstable_count, test::least(200, 8));
 }
 
 /// Gravity does not know north: a quarter turn about the vertical turns the answer.
@@ -81,7 +81,7 @@ TEST(RandomRobots, have_the_same_answer_by_multigrid) {
     }
     unilateral_count += multigrid.contact_model == verdict::ContactModel::kUnilateral ? 1 : 0;
   }
-  EXPECT_GE(unilateral_count, test::campaign(6, 8));
+  EXPECT_GE(unilateral_count, test::least(6, 8));
 }
 
 }  // namespace

@@ -24,11 +24,25 @@ inline constexpr bool kIsShort = true;
 inline constexpr bool kIsShort = false;
 #endif
 
-/// Returns `all`, a number of robots or of what is counted of them, or one in `share` of it where
+/// Returns `all`, a number of robots or one in `share` of it where
 /// campaigns are short.
 template <class Count>
 constexpr Count campaign(Count all, Count share = 4) {
   return kIsShort ? std::max(all / share, Count{1}) : all;
+}
+
+/// Returns how many of what a campaign counts there must be at least, `all` of them in the build
+/// that users get. The first few robots of a short campaign are no fair share of it, so that it
+/// must only reach what a count of that mean falls short of by chance in one of a thousand: three
+/// times its root below the mean, which is nothing for a small one.
+template <class Count>
+constexpr Count least(Count all, Count share = 4) {
+  const Count mean = campaign(all, share);
+  Count root{};
+  while ((root + 1) * (root + 1) <= 9 * mean) {
+    ++root;
+  }
+  return !kIsShort ? all : root < mean ? mean - root : Count{};
 }
 
 /// Every how many-th of a list is tried; where it is short every `share`-th.

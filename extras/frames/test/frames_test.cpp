@@ -151,7 +151,7 @@ TEST(PrintedFrames, have_no_order_if_a_closed_set_of_states_says_so) {
       }
     }
   }
-  EXPECT_GT(solved_count, test::campaign(100U, 8U));
+  EXPECT_GE(solved_count, test::least(100U, 8U));
 }
 
 }  // namespace

@@ -320,7 +320,7 @@ TEST(Guard, whatever_size_a_line_gives_to_reals_everybody_comes_to_a_verdict) {
     EXPECT_TRUE(script.run()) << "seed " << seed;
     changed += script.changed_count();
   }
-  EXPECT_GT(changed, holdfast::test::campaign(100));
+  EXPECT_GE(changed, holdfast::test::least(100));
 }
 
 }  // namespace

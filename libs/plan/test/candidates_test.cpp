@@ -118,7 +118,7 @@ TEST(Candidates, on_a_floor_below_the_level_that_the_robot_stands_on_have_no_pol
     add(sum,
         compare(spec, "bonded " + std::to_string(seed), 3, {.equilibrium = {.is_bonded = true}}));
   }
-  EXPECT_GT(lower_count, test::campaign(200U, 10U));
+  EXPECT_GE(lower_count, test::least(200U, 10U));
   EXPECT_LT(sum.check_count, sum.count / 2);
 }
 
@@ -144,7 +144,7 @@ TEST(Candidates, are_judged_so_where_faces_are_open_and_connections_have_their_o
       compare(spec, "open faces " + std::to_string(seed), 3);
     }
   }
-  EXPECT_GT(released_count, test::campaign(40U, 4U));
+  EXPECT_GE(released_count, test::least(40U, 4U));
 }
 
 /// Frees a general robot of all supports and stands it on a floor in its lowest layer.

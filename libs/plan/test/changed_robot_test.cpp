@@ -247,8 +247,8 @@ TEST(ChangedRobot, moves_as_one_that_is_solved_from_nothing) {
     grown_count += growth.has_new() ? 1 : 0;
     facet_count += states.size();
   }
-  EXPECT_GT(grown_count, test::campaign(60U));
-  EXPECT_GT(facet_count, test::campaign(200U));
+  EXPECT_GE(grown_count, test::least(60U));
+  EXPECT_GE(facet_count, test::least(200U));
 }
 
 /// Three modules in a row on one host: their weight, at an arm of 1, 2 and 3 pitches.
@@ -307,7 +307,7 @@ TEST(SolvedCore, answers_as_the_equations_do) {
       }
     }
   }
-  EXPECT_GT(answer_count, test::campaign(24U));
+  EXPECT_GE(answer_count, test::least(24U));
 }
 
 /// The solver goes by Newton's method on the whole robot, and then finds no other solutions either.
@@ -333,8 +333,8 @@ TEST(CoreResponse, finds_the_equilibrium_that_a_solver_does) {
     yielding_count +=
         std::ranges::count(found->contact, mechanics::kStuck) < std::ssize(found->contact) ? 1 : 0;
   }
-  EXPECT_GT(found_count, test::campaign(60U));
-  EXPECT_GT(yielding_count, test::campaign(4U));
+  EXPECT_GE(found_count, test::least(60U));
+  EXPECT_GE(yielding_count, test::least(4U));
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ TEST(ModuleMoves, of_cubes_are_all_that_a_step_can_do) {
       count += tried.size();
     }
   }
-  EXPECT_GT(count, holdfast::test::campaign(300U));
+  EXPECT_GE(count, holdfast::test::least(300U));
 }
 
 TEST(ModuleMoves, can_be_taken_back_in_every_lattice) {
@@ -82,7 +82,7 @@ TEST(ModuleMoves, can_be_taken_back_in_every_lattice) {
       }
     }
   }
-  EXPECT_GT(count, holdfast::test::campaign(200U));
+  EXPECT_GE(count, holdfast::test::least(200U));
 }
 
 TEST(ModuleMoves, leave_out_what_a_rule_bars) {

@@ -264,8 +264,8 @@ TEST(RobotOrder, is_found_just_where_a_walk_through_all_parts_finds_one) {
     EXPECT_TRUE(verify(*result.value().certificate));
     ++none_count;
   }
-  EXPECT_GT(found_count, holdfast::test::campaign(400, 20));
-  EXPECT_GT(none_count, holdfast::test::campaign(300, 20));
+  EXPECT_GE(found_count, holdfast::test::least(400, 20));
+  EXPECT_GE(none_count, holdfast::test::least(300, 20));
 }
 
 /// The largest load ratio, with all digits: that of multigrid may be off by 1e-4.
@@ -357,7 +357,7 @@ TEST(RobotOrder, is_safe_all_the_way_where_states_are_certified_without_being_so
       }
     }
   }
-  EXPECT_GT(certified_count, holdfast::test::campaign(500, 10));
+  EXPECT_GE(certified_count, holdfast::test::least(500, 10));
 }
 
 /// The load ratios of the states on the way, the largest of them, and whether all were solved.
@@ -459,9 +459,9 @@ TEST(RobotOrder, never_leads_where_bending_takes_the_centre_of_mass_over_the_edg
       ++left_out_count;
     }
   }
-  EXPECT_GT(found_count, holdfast::test::campaign(30, 5));
-  EXPECT_GT(left_out_count, holdfast::test::campaign(20, 5));
-  EXPECT_GT(certified_count, holdfast::test::campaign(300, 20));
+  EXPECT_GE(found_count, holdfast::test::least(30, 5));
+  EXPECT_GE(left_out_count, holdfast::test::least(20, 5));
+  EXPECT_GE(certified_count, holdfast::test::least(300, 20));
 }
 
 TEST(RobotOrder, keeps_its_bounds_where_there_is_no_time_to_be_exact) {

@@ -212,7 +212,7 @@ TEST(Stages, make_a_module_on_its_way_a_load_on_its_carrier_in_every_lattice) {
       }
     }
   }
-  EXPECT_GT(compared_count, holdfast::test::campaign(100, 5));
+  EXPECT_GE(compared_count, holdfast::test::least(100, 5));
 }
 
 }  // namespace

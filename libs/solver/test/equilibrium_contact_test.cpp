@@ -336,7 +336,7 @@ TEST(EquilibriumOfARandomRobot, has_an_alternative_with_ambiguous_facets_free) {
     EXPECT_TRUE(is_dense(precise.alternative)) << "seed " << seed;
     ++ambiguous_count;
   }
-  EXPECT_GE(ambiguous_count, campaign(4, 16));
+  EXPECT_GE(ambiguous_count, least(4, 16));
 }
 
 /// A robot that stands does without weak springs; where its facets would then be in other states,
@@ -362,8 +362,8 @@ TEST(EquilibriumOfARandomRobot, is_without_weak_springs_or_says_what_they_do) {
       ++told_count;
     }
   }
-  EXPECT_GE(taken_back_count, campaign(150, 16));
-  EXPECT_GE(told_count, campaign(20, 16));  // With springs as stiff as these, 1e-4.
+  EXPECT_GE(taken_back_count, least(150, 16));
+  EXPECT_GE(told_count, least(20, 16));  // With springs as stiff as these, 1e-4.
 }
 
 }  // namespace

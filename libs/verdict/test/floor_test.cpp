@@ -89,7 +89,7 @@ TEST(TiltOnAFloor, is_where_contact_forces_end) {
       EXPECT_FALSE(holds(tilted(spec, tilt * (1 + kHair), over_edge)));
     }
   }
-  EXPECT_GT(count, test::campaign(10));
+  EXPECT_GE(count, test::least(10));
 }
 
 /// The tilt of feet that differ in friction lies between those of the least and the most, and is no
@@ -150,7 +150,7 @@ TEST(FrictionNeeded, is_enough_and_hardly_more) {
       }
     }
   }
-  EXPECT_GT(count, test::campaign(5));
+  EXPECT_GE(count, test::least(5));
 }
 
 /// Two wedges of the file that gave 2.2e-5 or 1.3e-4 by the order of modules.
