@@ -13,11 +13,12 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._figures import Drawn
 from ._report import Report
 from ._verdict import VERDICTS, Judged, Verdict
 
 
-class Run(Judged):
+class Run(Judged, Drawn):
     """What the modules of a robot came to, beside the exact answer. It never changes."""
 
     __slots__ = ('_held',)
@@ -73,9 +74,9 @@ class Run(Judged):
         """The report as JSON; keys are in docs/formats.md."""
         return self._held.json()
 
-    def svg(self) -> str:
+    def _drawn(self, asked: _core.Figure) -> str:
         """The robot in the colours of its own load ratios."""
-        return self._held.svg()
+        return self._held.svg(asked)
 
     def __copy__(self) -> Run:
         return self

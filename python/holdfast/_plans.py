@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._figures import Drawn
 from ._progress import Progress, told
 from ._robot import Cell, Cells, Path, Robot, Table, counted
 from ._verdict import VERDICTS, Judged, Name, Verdict
@@ -95,7 +96,7 @@ class _Texts:
         return self
 
 
-class Places(_Texts):
+class Places(_Texts, Drawn):
     """Where the next module may go: every free cell beside a robot, judged."""
 
     __slots__ = ()
@@ -123,12 +124,9 @@ class Places(_Texts):
         cells: npt.NDArray[np.int32] = candidates['cell'][candidates['verdict'] == 0]
         return cells
 
-    def svg(self) -> str:
-        """A picture with a ghost in every place."""
-        return self._held.svg()
-
-    def _repr_svg_(self) -> str:
-        return self.svg()
+    def _drawn(self, asked: _core.Figure) -> str:
+        """With a ghost in every place."""
+        return self._held.svg(asked)
 
     def __len__(self) -> int:
         return len(self._held.candidates)
@@ -153,7 +151,32 @@ def next_places(robot: Union[Robot, Path], *, threads: int = 0, memory: float = 
     return places
 
 
-class Steps(_Texts, Judged):
+class State(Drawn):
+    """The robot after a step, or at the start."""
+
+    __slots__ = ('_judged', '_step')
+
+    def __init__(self, judged: _core.Steps, step: Optional[int]) -> None:
+        self._judged = judged
+        self._step = step
+
+    def _drawn(self, asked: _core.Figure) -> str:
+        return self._judged.state_svg(self._step, asked)
+
+
+class Strip(Drawn):
+    """The robot at the start and after each step, side by side."""
+
+    __slots__ = ('_judged',)
+
+    def __init__(self, judged: _core.Steps) -> None:
+        self._judged = judged
+
+    def _drawn(self, asked: _core.Figure) -> str:
+        return self._judged.strip_svg(asked)
+
+
+class Steps(_Texts, Judged, Drawn):
     """A sequence of steps, each judged at its three stages (Sec. II-B)."""
 
     __slots__ = ('robot',)
@@ -196,9 +219,17 @@ class Steps(_Texts, Judged):
         """The smallest margin of all stages, mm."""
         return self._held.margin_min_mm
 
-    def svg(self) -> str:
+    def _drawn(self, asked: _core.Figure) -> str:
         """The verdicts as a band, load ratio and margin below."""
-        return self._held.svg()
+        return self._held.svg(asked)
+
+    def state(self, step: Optional[int]) -> State:
+        """The robot after a step, from 0, or at the start, with its picture."""
+        return State(self._held, step)
+
+    def strip(self) -> Strip:
+        """The start and the robot after each step side by side, up to 24 of them."""
+        return Strip(self._held)
 
     def html(self) -> str:
         """A page with the picture and the report."""
@@ -207,9 +238,6 @@ class Steps(_Texts, Judged):
     def save_vtk(self, path: Path) -> None:
         """Writes a series for ParaView: a .pvd file, and a .vtu file for each state beside it."""
         self._held.save_vtk(path)
-
-    def _repr_svg_(self) -> str:
-        return self.svg()
 
     def __len__(self) -> int:
         return len(self._held.stages)

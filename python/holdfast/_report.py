@@ -4,14 +4,14 @@
 from __future__ import annotations
 
 import json
-import os
-from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
 from ._failures import Reliability, reliability_of
+from ._figures import Drawn, Path
 from ._optional import need
 from ._progress import Progress, told
 from ._verdict import VERDICTS, Judged, Verdict
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
 Table = npt.NDArray[Any]
 """A structured array."""
-Path = Union[str, bytes, 'os.PathLike[str]', 'os.PathLike[bytes]']
 
 
 def expect(given: object, kind: type, what: str) -> None:
@@ -59,7 +58,7 @@ class Remedies(NamedTuple):
     """How many changes of each kind were judged."""
 
 
-class Report(Judged):
+class Report(Judged, Drawn):
     """The verdict on a robot, and everything that it rests on. It never changes.
 
     Arrays are views of what the solver found: nothing is copied, and they keep it alive.
@@ -274,9 +273,8 @@ class Report(Judged):
         """A table of the connections."""
         return self._held.csv()
 
-    def svg(self) -> str:
-        """A picture."""
-        return self._held.svg()
+    def _drawn(self, asked: _core.Figure) -> str:
+        return self._held.svg(asked)
 
     def plot(self, axes: Any = None, *, title: Optional[str] = None, legend: bool = True) -> Any:
         """Draws the robot in space, in the colours and with the legend of the SVG.
@@ -315,9 +313,6 @@ class Report(Judged):
         from ._vtk import to_vtk
         return to_vtk(self)
 
-    def _repr_svg_(self) -> str:
-        return self.svg()
-
     def _repr_html_(self) -> str:
         from ._page import frame
         return frame(self)
@@ -331,8 +326,8 @@ class Report(Judged):
         self._held.save(path, 'csv')
 
     def save_svg(self, path: Path) -> None:
-        """Writes the picture."""
-        self._held.save(path, 'svg')
+        """Writes the picture as ``save_figure`` does."""
+        self.save_figure(path)
 
     def save_vtu(self, path: Path) -> None:
         """Writes a grid for ParaView."""

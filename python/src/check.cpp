@@ -248,10 +248,8 @@ void save(const CheckedStructure& check, const py::handle& given, const std::str
         write_report_json(out, *check.structure, check.result);
       } else if (kind == "csv") {
         write_connections_csv(out, *check.structure, check.result);
-      } else if (kind == "vtu") {
-        write_picture_vtu(out, *check.structure, check.result);
       } else {
-        out << picture_svg(*check.structure, check.result);
+        write_picture_vtu(out, *check.structure, check.result);
       }
     });
   });
@@ -277,8 +275,8 @@ void add_texts(py::class_<CheckedStructure, std::shared_ptr<CheckedStructure>>& 
              return without_gil([&] { return report_text(*c.structure, c.result); });
            })
       .def("svg",
-           [](const CheckedStructure& c) {
-             return without_gil([&] { return picture_svg(*c.structure, c.result); });
+           [](const CheckedStructure& c, const io::FigureOptions& figure) {
+             return without_gil([&] { return picture_svg(*c.structure, c.result, figure); });
            })
       .def("csv",
            [](const CheckedStructure& c) {

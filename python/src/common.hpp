@@ -63,7 +63,7 @@ struct CheckedStructure {
 using SharedCheck = std::shared_ptr<const CheckedStructure>;
 
 /// Raises holdfast.Error if the path ends as files of another kind do; this one is "json", "csv",
-/// "svg", "vtu", "pvd" or "structure", which is holdfast JSON.
+/// "vtu", "pvd" or "structure", which is holdfast JSON.
 void expect_ending(const std::string& path, std::string_view kind);
 
 /// A path as the system has it, from what Python's open() takes. Raises holdfast.Error for what can
@@ -114,6 +114,7 @@ py::array view(const T* values, std::size_t count, const py::dtype& type, const 
 void add_structure(py::module_& module);
 void add_check(py::module_& module);
 void add_pickle(py::module_& module);
+void add_figures(py::module_& module);
 void add_failures(py::module_& module);
 void add_plans(py::module_& module);
 void add_distributed(py::module_& module);

@@ -286,7 +286,9 @@ void add_distributed(py::module_& module) {
              return r.is_emulated ? report_text(*r.structure, r.exact, r.run)
                                   : report_text(*r.structure, r.exact, r.run.run);
            })
-      .def("svg", [](const Run& r) { return picture_svg(*r.structure, r.run.run); });
+      .def("svg", [](const Run& r, const io::FigureOptions& figure) {
+        return picture_svg(*r.structure, r.run.run, figure);
+      });
   module.def("simulate", &simulate_robot);
   module.def("emulate", &emulate_robot);
   module.def("can_emulate", &emulator::is_available);

@@ -9,6 +9,7 @@ PYBIND11_MODULE(_core, module) {
   add_check(module);
   add_pickle(module);
   add_failures(module);
+  add_figures(module);
   add_plans(module);
   add_distributed(module);
 }

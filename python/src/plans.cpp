@@ -308,8 +308,9 @@ void add_places(py::module_& module) {
                  [&](std::ostream& out) { write_next_json(out, *p.structure, p.result); });
            })
       .def("text", [](const Places& p) { return next_text(*p.structure, p.result); })
-      .def("svg", [](const Places& p) {
-        return without_gil([&] { return next_svg(*p.structure, check(*p.structure), p.result); });
+      .def("svg", [](const Places& p, const io::FigureOptions& figure) {
+        return without_gil(
+            [&] { return next_svg(*p.structure, check(*p.structure), p.result, {}, figure); });
       });
   module.def("next", &next);
   module.def("remedies", &remedies);
@@ -338,7 +339,17 @@ void add_steps(py::module_& module) {
                  [&](std::ostream& out) { write_steps_json(out, s.file, s.result); });
            })
       .def("text", [](const JudgedSteps& s) { return steps_text(s.file, s.result); })
-      .def("svg", [](const JudgedSteps& s) { return steps_svg(s.file, s.result); })
+      .def("svg", [](const JudgedSteps& s,
+                     const io::FigureOptions& figure) { return steps_svg(s.file, s.result, figure); })
+      .def("state_svg",
+           [](const JudgedSteps& s, std::optional<std::size_t> step,
+              const io::FigureOptions& figure) {
+             return take(without_gil([&] { return step_svg(s.file, s.result, step, figure); }));
+           })
+      .def("strip_svg",
+           [](const JudgedSteps& s, const io::FigureOptions& figure) {
+             return take(without_gil([&] { return steps_strip_svg(s.file, s.result, figure); }));
+           })
       .def("html", [](const JudgedSteps& s) { return steps_html(s.file, s.result); })
       .def("save_vtk", [](const JudgedSteps& s, const py::handle& given) {
         const std::string path = path_of(given);

@@ -4,7 +4,7 @@
 
 namespace holdfast::cli {
 
-void add_figure(CLI::App& command, Figure& figure, const std::string& help, FigureKind kind) {
+void add_figure(CLI::App& command, Figure& figure, const std::string& help) {
   CLI::Option* const svg = &add_output(command, "--svg", figure.path,
                                        help + ", as SVG, PNG or PDF by the file's ending");
   io::FigureOptions& options = figure.options;
@@ -23,9 +23,6 @@ void add_figure(CLI::App& command, Figure& figure, const std::string& help, Figu
           ->type_name("TEXT"));
   add(command.add_flag("--grey", options.is_grey,
                        "Draw without colours; the darker the more load"));
-  if (kind == FigureKind::kChart) {
-    return;
-  }
   add(command
           .add_option_function<std::string>(
               "--view", [&](const std::string& text) { options.view = *io::find_view(text); },

@@ -15,14 +15,8 @@ struct Figure {
   io::FigureOptions options;
 };
 
-enum class FigureKind : std::uint8_t {
-  kRobot,  ///< Modules, with a legend.
-  kChart,  ///< Curves, which are looked at from nowhere.
-};
-
 /// Adds --svg, which `help` explains, and the options of the figure.
-void add_figure(CLI::App& command, Figure& figure, const std::string& help,
-                FigureKind kind = FigureKind::kRobot);
+void add_figure(CLI::App& command, Figure& figure, const std::string& help);
 
 /// Writes the picture that `draw(options)` makes, if one is asked for; returns false, and prints
 /// the error, if it cannot be written.

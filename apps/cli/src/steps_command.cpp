@@ -24,6 +24,8 @@ struct StepsArguments {
   Figure figure;
   std::string html;
   std::string vtk;
+  std::string step;  ///< Of which the robot is drawn: "start", or from 0; empty for none.
+  bool is_strip = false;
   bool is_quiet = false;
   bool ends_when_unsafe = false;
   bool is_certificate = false;
@@ -61,6 +63,37 @@ bool write_series(const StepsArguments& options, const StepsFile& file, const St
   return !error;
 }
 
+/// The step after which the robot is drawn; none for the start.
+std::optional<std::size_t> drawn_step(const StepsArguments& options) {
+  return options.step == "start" ? std::nullopt
+                                 : std::optional<std::size_t>(std::stoul(options.step));
+}
+
+/// The picture that is asked for: curves, one state or a film strip.
+base::Result<std::string> draw(const StepsArguments& options, const StepsFile& file,
+                               const StepsResult& result, const io::FigureOptions& figure) {
+  const StepsOptions solving = {.thread_count = options.thread_count};
+  if (options.is_strip) {
+    return steps_strip_svg(file, result, figure, solving);
+  }
+  return options.step.empty() ? steps_svg(file, result, figure)
+                              : step_svg(file, result, drawn_step(options), figure, solving);
+}
+
+bool write_picture(const StepsArguments& options, const StepsFile& file,
+                   const StepsResult& result) {
+  if (options.figure.path.empty()) {
+    return true;
+  }
+  const auto picture = draw(options, file, result, options.figure.options);
+  if (!picture) {
+    print_error(picture.error(), options.figure.path);
+    return false;
+  }
+  return write_figure_or_complain(options.figure,
+                                  [&](const io::FigureOptions&) { return picture.value(); });
+}
+
 bool write_files(const StepsArguments& options, const StepsFile& file, const StepsResult& result) {
   bool is_written = true;
   if (!options.json.empty()) {
@@ -69,11 +102,7 @@ bool write_files(const StepsArguments& options, const StepsFile& file, const Ste
       out << '\n';
     });
   }
-  is_written = write_figure_or_complain(options.figure,
-                                        [&](const io::FigureOptions& figure) {
-                                          return steps_svg(file, result, figure);
-                                        }) &&
-               is_written;
+  is_written = write_picture(options, file, result) && is_written;
   if (!options.html.empty()) {
     is_written = write_or_complain(options.html, steps_html(file, result)) && is_written;
   }
@@ -156,6 +185,14 @@ int run(const StepsArguments& options) {
     fmt::print(stderr, "holdfast: TARGET is what --verify compares a certificate with\n");
     return kExitUsage;
   }
+  const io::FigureOptions& figure = options.figure.options;
+  if (options.step.empty() && !options.is_strip &&
+      (!figure.view.is_isometric || !figure.has_legend)) {
+    fmt::print(stderr,
+               "holdfast: curves have no view and no legend; expected --step or --strip "
+               "beside --view or --no-legend\n");
+    return kExitUsage;
+  }
   const std::vector<std::string> inputs = {options.file};
   if (complain_of_series(options) || complain_of_outputs(inputs, options.outputs())) {
     return kExitUsage;
@@ -177,6 +214,30 @@ int run(const StepsArguments& options) {
   return write_files(options, file.value(), result.value()) ? exit_code(verdict) : kExitBadInput;
 }
 
+/// Adds what chooses states to draw in place of curves.
+void add_states(CLI::App& command, StepsArguments& options) {
+  command
+      .add_option(
+          "--step", options.step,
+          "Draw the robot after this step, with its loads, in place of the curves: a number "
+          "from 0, or start")
+      ->type_name("K|start")
+      ->check([](const std::string& text) {
+        const bool is_number = !text.empty() && text.size() < 10 &&
+                               text.find_first_not_of("0123456789") == std::string::npos;
+        return is_number || text == "start" ? "" : "expected a step from 0, or start";
+      })
+      ->needs("--svg")
+      ->group(kOutputs);
+  command
+      .add_flag("--strip", options.is_strip,
+                "Draw the start and the robot after each step side by side, up to 24 of them, in "
+                "place of the curves")
+      ->needs("--svg")
+      ->excludes("--step")
+      ->group(kOutputs);
+}
+
 }  // namespace
 
 Command add_steps(CLI::App& app) {
@@ -194,8 +255,8 @@ Command add_steps(CLI::App& app) {
   add_reading(*command, options->reading);
   add_output(*command, "--json", options->json,
              "Write the whole report as JSON; - is standard output");
-  add_figure(*command, options->figure, "Draw verdicts, load ratio and margin along the sequence",
-             FigureKind::kChart);
+  add_figure(*command, options->figure, "Draw verdicts, load ratio and margin along the sequence");
+  add_states(*command, *options);
   add_output(*command, "--html", options->html, "Write a page with that picture and the report");
   add_output(*command, "--vtk", options->vtk,
              "Write a .pvd file for ParaView, and a .vtu file beside it for every step");
@@ -217,6 +278,7 @@ Command add_steps(CLI::App& app) {
           {.examples = {{"steps walk.json", "is every stage safe?"},
                         {"steps walk.json --until-unsafe --svg walk.svg",
                          "draw the sequence up to its first unsafe step"},
+                        {"steps plan.json --svg plan.png --strip", "the robot after each step"},
                         {"steps proof.json target.json --verify",
                          "verify a certificate that there is no order"}},
            .notes = "Steps count from 0: first those of \"planned\", \"later_steps\" or "

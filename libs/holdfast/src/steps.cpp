@@ -2,10 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/steps.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <chrono>
+#include <set>
 #include <span>
 #include <utility>
 #include <vector>
+
+#include "holdfast/host/text.hpp"
 
 namespace holdfast {
 namespace {
@@ -82,6 +88,75 @@ std::string steps_html(const StepsFile& file, const StepsResult& result) {
 
 namespace {
 
+/// Calls `visit(state, pieces)` for the start, state 0, and for the robot after each step that was
+/// judged, each in its pieces; ends at the first error.
+template <class Wanted, class Visit>
+std::optional<base::Error> for_each_state(const StepsFile& file, const StepsResult& result,
+                                          const Wanted& wanted, const Visit& visit) {
+  const auto sequence = io::make_sequence(file.document);
+  if (!sequence) {
+    return sequence.error();
+  }
+  plan::RobotState robot(sequence.value().start);
+  std::optional<base::Error> error;
+  if (wanted(0)) {
+    error = visit(0, std::vector<model::RobotSpec>{sequence.value().start});
+  }
+  for (std::size_t i = 0; i < result.judgement.steps.size() && !error; ++i) {
+    const model::Step& step = sequence.value().steps[i];
+    const auto transition = plan::find_transition(robot, step);
+    if (!transition) {
+      return transition.error();
+    }
+    if (wanted(i + 1)) {
+      const auto scenes = plan::find_scenes(robot, step, transition.value(), plan::Stage::kConnect);
+      error = scenes ? visit(i + 1, scenes.value().front().pieces) : scenes.error();
+    }
+    plan::apply(step, transition.value(), robot);
+  }
+  return error;
+}
+
+/// A robot that was solved anew, and what it was made of.
+struct DrawnState {
+  std::size_t step;
+  model::RobotSpec spec;
+  std::optional<model::Robot> robot = {};
+  CheckResult checked = {};
+};
+
+/// The states that are wanted, solved.
+template <class Wanted>
+base::Result<std::vector<DrawnState>> drawn_states(const StepsFile& file, const StepsResult& result,
+                                                   const StepsOptions& options,
+                                                   const Wanted& wanted) {
+  std::vector<DrawnState> states;
+  const auto visit =
+      [&](std::size_t step,
+          const std::vector<model::RobotSpec>& pieces) -> std::optional<base::Error> {
+    if (pieces.size() > 1) {
+      return base::Error{.code = base::ErrorCode::kBadInput,
+                         .message = fmt::format("after step {} the robot is in {}, of which no one "
+                                                "picture is made; --vtk writes each",
+                                                step - 1, host::counted(pieces.size(), "piece"))};
+    }
+    auto robot = model::Robot::create(pieces.front(), options.thread_count);
+    if (!robot) {
+      return robot.error();
+    }
+    DrawnState state{.step = step, .spec = pieces.front()};
+    state.robot.emplace(std::move(robot).value());
+    state.checked = check(*state.robot, {.thread_count = options.thread_count,
+                                         .memory_bytes_max = options.memory_bytes_max});
+    states.push_back(std::move(state));
+    return std::nullopt;
+  };
+  if (const auto error = for_each_state(file, result, wanted, visit)) {
+    return *error;
+  }
+  return states;
+}
+
 /// Writes one state after another, and remembers what belongs into the .pvd file.
 class Series {
  public:
@@ -89,13 +164,13 @@ class Series {
       : path_(std::move(path)), options_(options) {}
 
   /// The robots of one time.
-  std::optional<base::Error> add(std::span<const model::RobotSpec> pieces) {
+  std::optional<base::Error> add(std::size_t time, std::span<const model::RobotSpec> pieces) {
     for (std::size_t part = 0; part < pieces.size(); ++part) {
       const auto robot = model::Robot::create(pieces[part], options_.thread_count);
       if (!robot) {
         return robot.error();
       }
-      std::string name = path_.stem().string() + "_" + std::to_string(time_);
+      std::string name = path_.stem().string() + "_" + std::to_string(time);
       name += (pieces.size() > 1 ? "_" + std::to_string(part) : "") + ".vtu";
       const CheckResult checked = check(
           robot.value(),
@@ -106,9 +181,11 @@ class Series {
       if (error) {
         return error;
       }
-      files_.push_back({.time = time_, .part = part, .name = std::move(name)});
+      files_.push_back({.time = time, .part = part, .name = std::move(name)});
     }
-    ++time_;
+    if (options_.progress && time > 0) {
+      options_.progress(time);
+    }
     return std::nullopt;
   }
 
@@ -119,18 +196,30 @@ class Series {
  private:
   std::filesystem::path path_;
   const StepsOptions& options_;
-  std::size_t time_ = 0;
   std::vector<io::SeriesFile> files_;
 };
+
+/// The states in a film strip: all of them, or some evenly spread, the first unsafe and the last.
+std::set<std::size_t> strip_states(const plan::SequenceJudgement& judged) {
+  const std::size_t count = judged.steps.size();
+  std::set<std::size_t> states = {0, count};
+  if (judged.first_unsafe) {
+    states.insert(judged.first_unsafe->step + 1);
+  }
+  const std::size_t frames = std::min(count + 1, kStripFrameMax - states.size());
+  for (std::size_t i = 0; i < frames && count < kStripFrameMax; ++i) {
+    states.insert(i);
+  }
+  for (std::size_t i = 1; i <= frames && count >= kStripFrameMax; ++i) {
+    states.insert(i * count / (frames + 1));
+  }
+  return states;
+}
 
 }  // namespace
 
 std::optional<base::Error> write_steps_vtk(const std::filesystem::path& path, const StepsFile& file,
                                            const StepsResult& result, const StepsOptions& options) {
-  const auto sequence = io::make_sequence(file.document);
-  if (!sequence) {
-    return sequence.error();
-  }
   const std::string name = path.stem().string();
   if (io::one_line(name) != name) {
     return base::Error{.code = base::ErrorCode::kBadInput,
@@ -138,26 +227,53 @@ std::optional<base::Error> write_steps_vtk(const std::filesystem::path& path, co
                            "names of .vtu files are written into the .pvd file, expected "
                            "UTF-8 without control characters"};
   }
-  plan::RobotState robot(sequence.value().start);
   Series series(path, options);
-  const std::vector<model::RobotSpec> start = {sequence.value().start};
-  auto error = series.add(start);
-  for (std::size_t i = 0; i < result.judgement.steps.size() && !error; ++i) {
-    const model::Step& step = sequence.value().steps[i];
-    const auto transition = plan::find_transition(robot, step);
-    const auto scenes =
-        transition ? plan::find_scenes(robot, step, transition.value(), plan::Stage::kConnect)
-                   : base::Result<std::vector<plan::Scene>>(transition.error());
-    if (!scenes) {
-      return scenes.error();
-    }
-    error = series.add(scenes.value().front().pieces);
-    plan::apply(step, transition.value(), robot);
-    if (options.progress) {
-      options.progress(i + 1);
-    }
-  }
+  const auto error = for_each_state(
+      file, result, [](std::size_t) { return true; },
+      [&](std::size_t time, std::span<const model::RobotSpec> pieces) {
+        return series.add(time, pieces);
+      });
   return error ? error : series.finish();
+}
+
+base::Result<std::string> step_svg(const StepsFile& file, const StepsResult& result,
+                                   std::optional<std::size_t> step, const io::FigureOptions& figure,
+                                   const StepsOptions& options) {
+  const std::size_t count = result.judgement.steps.size();
+  if (step && *step >= count) {
+    return base::Error{.code = base::ErrorCode::kBadInput,
+                       .message = fmt::format("expected a step from 0 to {}, or start; found {}",
+                                              count - 1, *step)};
+  }
+  const std::size_t wanted = step ? *step + 1 : 0;
+  const auto states =
+      drawn_states(file, result, options, [&](std::size_t state) { return state == wanted; });
+  if (!states) {
+    return states.error();
+  }
+  const DrawnState& state = states.value().front();
+  const std::string title = step ? fmt::format("{}, after step {}", file.name, *step)
+                                 : fmt::format("{}, start", file.name);
+  return io::write_svg(*state.robot, state.checked.assessment, title, state.spec.obstacles, figure);
+}
+
+base::Result<std::string> steps_strip_svg(const StepsFile& file, const StepsResult& result,
+                                          const io::FigureOptions& figure,
+                                          const StepsOptions& options) {
+  const std::set<std::size_t> wanted = strip_states(result.judgement);
+  const auto states = drawn_states(file, result, options,
+                                   [&](std::size_t state) { return wanted.contains(state); });
+  if (!states) {
+    return states.error();
+  }
+  std::vector<io::StripFrame> frames;
+  for (const DrawnState& state : states.value()) {
+    frames.push_back({.step = state.step,
+                      .robot = &*state.robot,
+                      .assessment = &state.checked.assessment,
+                      .obstacles = state.spec.obstacles});
+  }
+  return io::write_strip_svg(frames, file.name, figure);
 }
 
 std::string steps_text(const StepsFile& file, const StepsResult& result) {

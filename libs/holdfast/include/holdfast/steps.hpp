@@ -54,6 +54,24 @@ void write_steps_json(std::ostream& out, const StepsFile& file, const StepsResul
 std::string steps_text(const StepsFile& file, const StepsResult& result);
 std::string steps_svg(const StepsFile& file, const StepsResult& result,
                       const io::FigureOptions& figure = {});
+
+/// Draws the robot after a step that was judged, with its loads: 0 is the first, none the start.
+/// Errors: no such step was judged; the robot is in pieces then.
+base::Result<std::string> step_svg(const StepsFile& file, const StepsResult& result,
+                                   std::optional<std::size_t> step,
+                                   const io::FigureOptions& figure = {},
+                                   const StepsOptions& options = {});
+
+/// The most states in a film strip.
+inline constexpr std::size_t kStripFrameMax = 24;
+
+/// Draws the start and the robot after each step that was judged side by side, with its loads; of
+/// long sequences as many as there is room for, with the first unsafe step and the last. Error: the
+/// robot is in pieces after a step.
+base::Result<std::string> steps_strip_svg(const StepsFile& file, const StepsResult& result,
+                                          const io::FigureOptions& figure = {},
+                                          const StepsOptions& options = {});
+
 std::string steps_html(const StepsFile& file, const StepsResult& result);
 
 /// Writes a series for ParaView: `path`, a .pvd file, and beside it a .vtu file for the start and

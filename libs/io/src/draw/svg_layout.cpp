@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace holdfast::io {
 namespace {
@@ -20,21 +19,6 @@ constexpr double kPaddingY = 46;
 
 /// The squares of the drawing that are known to be covered or not.
 constexpr double kCoveredSquarePx = 4;
-
-/// An extent on the picture's lattice.
-struct Extent {
-  double u_min = std::numeric_limits<double>::infinity();
-  double u_max = -std::numeric_limits<double>::infinity();
-  double v_min = std::numeric_limits<double>::infinity();
-  double v_max = -std::numeric_limits<double>::infinity();
-
-  void add(double u, double v) {
-    u_min = std::min(u_min, u);
-    u_max = std::max(u_max, u);
-    v_min = std::min(v_min, v);
-    v_max = std::max(v_max, v);
-  }
-};
 
 std::pair<double, double> lattice_of(const Projection& projection, LatticePoint point) {
   // The corner with the smallest coordinates of the lowest cell is the origin.
@@ -131,7 +115,47 @@ void lay_out(Scene& scene) {
       kHeaderHeight + (drawing_height - height) / 2 - extent.v_min / 2 * edge};
 }
 
+/// Where the lattice's own origin is on the picture's lattice, which begins at each robot's lowest
+/// cell.
+std::pair<double, double> own_origin(const Scene& scene) {
+  return lattice_of(scene.projection, LatticePoint(0, 0, 0));
+}
+
 }  // namespace
+
+double scale_alike(std::deque<Scene>& scenes, double width, double height_max) {
+  constexpr double kPadding = 8;
+  Extent common;
+  for (const Scene& scene : scenes) {
+    const Extent extent = extent_of(scene);
+    const auto [u, v] = own_origin(scene);
+    common.add(extent.u_min - u, extent.v_min - v);
+    common.add(extent.u_max - u, extent.v_max - v);
+  }
+  const double u_span = (common.u_max - common.u_min) * kCos30;
+  const double v_span = (common.v_max - common.v_min) / 2;
+  const double edge =
+      std::min({kEdgePxMax, (width - 2 * kPadding) / u_span, (height_max - 2 * kPadding) / v_span});
+  for (Scene& scene : scenes) {
+    scene.common = common;
+    scene.projection.edge_px = edge;
+  }
+  return v_span * edge + 2 * kPadding;
+}
+
+void place_frame(Scene& scene, ScreenPoint corner, double width, double height) {
+  const auto [u, v] = own_origin(scene);
+  const Extent& common = scene.common;
+  const double edge = scene.projection.edge_px;
+  scene.projection.origin_px =
+      corner + ScreenPoint{width / 2 - ((common.u_min + common.u_max) / 2 + u) * kCos30 * edge,
+                           height / 2 - ((common.v_min + common.v_max) / 2 + v) / 2 * edge};
+  scene.drawing = {
+      .left = corner.x, .top = corner.y, .right = corner.x + width, .bottom = corner.y + height};
+  if (scene.bodies) {
+    scene.mark_bodies();
+  }
+}
 
 ScreenPoint Projection::at(double u, double v) const {
   return origin_px + ScreenPoint{u * kCos30 * edge_px, v / 2 * edge_px};

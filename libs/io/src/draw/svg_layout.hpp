@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <deque>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -54,6 +56,21 @@ struct Projection {
   std::pair<double, double> lattice_at(ScreenPoint point) const;
 };
 
+/// An extent on the picture's lattice.
+struct Extent {
+  double u_min = std::numeric_limits<double>::infinity();
+  double u_max = -std::numeric_limits<double>::infinity();
+  double v_min = std::numeric_limits<double>::infinity();
+  double v_max = -std::numeric_limits<double>::infinity();
+
+  void add(double u, double v) {
+    u_min = std::min(u_min, u);
+    u_max = std::max(u_max, u);
+    v_min = std::min(v_min, v);
+    v_max = std::max(v_max, v);
+  }
+};
+
 struct Box {
   double left = 0;
   double top = 0;
@@ -85,6 +102,7 @@ struct Scene {
   std::optional<VisibleSurface> all;       ///< With them; none if there are none, or bodies.
   PlanRange plan;
   Projection projection;
+  Extent common;  ///< Of all scenes that scale_alike() was given, from the lattice's own origin.
   double card_width = 0;
   Box drawing;  ///< Pixels that the drawing may use.
 
@@ -130,11 +148,20 @@ struct Scene {
 
   bool is_detailed() const { return robot.modules().size() <= kDetailedCountMax; }
 
- private:
+  /// Finds anew what bodies cover, after the projection or the drawing has changed.
   void mark_bodies();
 
+ private:
   std::vector<bool> covered_;  ///< By bodies: squares of the drawing, row by row.
   std::size_t covered_row_length_ = 0;
 };
+
+/// Gives several scenes one scale, the largest with which each fits into a frame of `width` and at
+/// most `height_max` pixels; returns the height that they need. place_frame() comes next.
+double scale_alike(std::deque<Scene>& scenes, double width, double height_max);
+
+/// Puts a scene into a frame, so that a cell is at the same place in the frames of all scenes that
+/// scale_alike() was given.
+void place_frame(Scene& scene, ScreenPoint corner, double width, double height);
 
 }  // namespace holdfast::io

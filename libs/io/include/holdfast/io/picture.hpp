@@ -39,6 +39,20 @@ std::string write_svg_with_ghosts(const model::Robot& robot, std::span<const Gho
                                   std::span<const model::Obstacle> obstacles = {},
                                   const FigureOptions& figure = {});
 
+/// A state of a robot that changes step by step.
+struct StripFrame {
+  std::size_t step = 0;  ///< How many steps have been done: 0 is the start.
+  const model::Robot* robot = nullptr;
+  const verdict::Assessment* assessment = nullptr;
+  std::span<const model::Obstacle> obstacles = {};
+};
+
+/// Returns an SVG with states side by side, all to one scale, each with its verdict and largest load
+/// ratio. Modules are coloured as in write_svg(). The views of `frames`, of which there must be
+/// some, must outlive the call.
+std::string write_strip_svg(std::span<const StripFrame> frames, std::string_view title,
+                            const FigureOptions& figure = {});
+
 /// Writes a VTK XML unstructured grid (.vtu, compressed binary) for ParaView: one cell per module,
 /// in the shape of its lattice, with load ratio, displacement and ground force, one line per
 /// connection with its forces, one square per facet that touches with its state and force, and a
