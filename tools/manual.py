@@ -95,8 +95,11 @@ def output_of(*command):
 
 
 def ask_values(program, command, entry):
-    """The program names the words that it allows when it is given another."""
-    if entry.type in ('NAME', 'free|line|surface'):
+    """Words of a type such as all|broken|N; or the program names those that it allows when it is
+    given another."""
+    entry.values = [word for word in (entry.type or '').split('|')
+                    if re.fullmatch('[a-z][a-z-]*', word)]
+    if entry.type == 'NAME':
         said = output_of(program, command, entry.names[-1], '?', '-')
         words = re.search(r': expected (.*), found ', said)
         entry.values = re.split(', | or ', words[1]) if words else []

@@ -26,6 +26,19 @@ macro(holdfast_package component name section summary)
   install(FILES ${PROJECT_SOURCE_DIR}/cmake/install/copyright
                 ${CMAKE_CURRENT_BINARY_DIR}/changelog.Debian.gz
           DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${component})
+  # What lintian is told to accept, each with its reason.
+  set(NAME ${name})
+  set(overrides "")
+  foreach(part common ${component})
+    if(EXISTS ${PROJECT_SOURCE_DIR}/cmake/install/lintian/${part})
+      file(READ ${PROJECT_SOURCE_DIR}/cmake/install/lintian/${part} lines)
+      string(APPEND overrides "${lines}")
+    endif()
+  endforeach()
+  string(CONFIGURE "${overrides}" overrides @ONLY)
+  file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/lintian/${name} "${overrides}")
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/lintian/${name}
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides COMPONENT ${component})
 endmacro()
 
 set(version ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})
@@ -57,7 +70,7 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "xdg-utils, holdfast-firmware")
 if(EXISTS ${PROJECT_SOURCE_DIR}/build/firmware/module_stm32f0.elf)
   list(APPEND CPACK_COMPONENTS_ALL firmware)
   holdfast_package(firmware holdfast-firmware science
-    "will a modular robot hold? (images of the modules' firmware, for holdfast emulate)")
+    "will a modular robot hold? (firmware images for holdfast emulate)")
   set(CPACK_DEBIAN_FIRMWARE_PACKAGE_ARCHITECTURE all)
 endif()
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SHLIBDEPS ON)

@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import importlib
 
-_PACKAGES = {'matplotlib': 'python3-matplotlib', 'PIL': 'python3-pil', 'vtkmodules': 'python3-vtk9'}
+_PACKAGES = {'matplotlib': 'python3-matplotlib', 'PIL': 'python3-pil', 'vtkmodules': 'python3-vtk9',
+             'networkx': 'python3-networkx'}
 
 
 def need(module: str, what: str) -> None:

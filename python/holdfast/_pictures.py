@@ -8,10 +8,11 @@ import os
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, Optional, Union
 
+from ._figures import Path
 from ._optional import need
 from ._plans import Order, Steps
 from ._report import Report, expect
-from ._robot import Path, Robot, _cell_of
+from ._robot import Robot, _cell_of
 
 if TYPE_CHECKING:
     from ._film import Film

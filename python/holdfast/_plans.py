@@ -10,9 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._figures import Drawn
+from ._figures import Drawn, Path
 from ._progress import Progress, told
-from ._robot import Cell, Cells, Path, Robot, Table, counted
+from ._robot import Cell, Cells, Robot, Table, counted
 from ._verdict import VERDICTS, Judged, Name, Verdict
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Optional
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
+from . import _core, _geometry
 from ._failures import Reliability, reliability_of
 from ._figures import Drawn, Path
 from ._optional import need
@@ -307,6 +307,13 @@ class Report(Judged, Drawn):
         from ._page import show
         show(self, height)
 
+    def to_networkx(self) -> Any:
+        """The graph of `Robot.to_networkx`, each edge with what its connection carries.
+
+        Edges have the fields of ``connections``. Needs python3-networkx.
+        """
+        return _geometry.loaded_graph(self)
+
     def to_vtk(self) -> Any:
         """The grid of ``save_vtu`` as a ``vtkUnstructuredGrid``. Needs python3-vtk9."""
         need('vtkmodules', 'report.to_vtk()')
@@ -326,8 +333,9 @@ class Report(Judged, Drawn):
         self._held.save(path, 'csv')
 
     def save_svg(self, path: Path) -> None:
-        """Writes the picture as ``save_figure`` does."""
-        self.save_figure(path)
+        """Writes the picture as SVG; ``save_figure`` has options and writes PNG and PDF, too."""
+        _core.expect_ending(path, 'svg')
+        _core.write_file(path, self.svg())
 
     def save_vtu(self, path: Path) -> None:
         """Writes a grid for ParaView."""

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
+from . import _core, _geometry
 from ._failures import LoseOne, lose_one_of
+from ._figures import Path
 from ._progress import Progress, told
 from ._report import Report
 
@@ -26,7 +27,6 @@ Cells = Union[npt.NDArray[Any], Iterable[Iterable[int]]]
 Cell = tuple[int, int, int]
 Table = npt.NDArray[Any]
 """A structured array."""
-Path = Union[str, bytes, 'os.PathLike[str]', 'os.PathLike[bytes]']
 
 
 def counted(count: int, one: str) -> str:
@@ -451,6 +451,47 @@ class Robot:
         <holdfast.Robot of 2 modules, cubic>
         """
         return self._of(self._held.attached())
+
+    def translated(self, by: Sequence[int]) -> Robot:
+        """The same robot with every cell moved by three integers, and the floor with it.
+
+        >>> Robot([[0, 0, 0]]).translated([2, 0, 1]).supports
+        1
+        """
+        return _geometry.translated(self, by)
+
+    def rotated(self, quarters: int = 1) -> Robot:
+        """A robot of cubes turned about z by quarters of a turn, from x towards y, with its loads.
+
+        >>> Robot([[0, 0, 0], [1, 0, 0]]).rotated().cells.tolist()
+        [[0, 0, 0], [0, 1, 0]]
+        """
+        return _geometry.rotated(self, quarters)
+
+    def union(self, other: Robot) -> Robot:
+        """This robot and another one, of the same lattice and material, as one.
+
+        >>> arm = Robot([[0, 0, 0], [0, 0, 1]])
+        >>> arm.union(arm.translated([1, 0, 0]))
+        <holdfast.Robot of 4 modules, cubic>
+        """
+        return _geometry.union(self, other)
+
+    def to_networkx(self) -> Any:
+        """The modules as a ``networkx.Graph``: nodes are cells, edges connections.
+
+        Nodes have ``mass_kg``, ``support`` (none, touches, fixed) and ``is_planned``. Needs
+        python3-networkx.
+        """
+        return _geometry.graph(self)
+
+    def __contains__(self, cell: object) -> bool:
+        """Whether there is a module in a cell, planned ones too."""
+        try:
+            wanted = np.asarray(cell)
+        except ValueError:
+            return False
+        return wanted.shape == (3,) and bool((self.modules['cell'] == wanted).all(axis=1).any())
 
     @property
     def name(self) -> str:

@@ -38,6 +38,7 @@ std::string path_of(const py::handle& given) {
 void expect_ending(const std::string& path, std::string_view kind) {
   const FileFormat format = kind == "json"  ? FileFormat::kJson
                             : kind == "csv" ? FileFormat::kCsv
+                            : kind == "svg" ? FileFormat::kSvg
                             : kind == "vtu" ? FileFormat::kVtu
                             : kind == "pvd" ? FileFormat::kPvd
                                             : FileFormat::kHoldfastJson;

@@ -63,7 +63,7 @@ struct CheckedStructure {
 using SharedCheck = std::shared_ptr<const CheckedStructure>;
 
 /// Raises holdfast.Error if the path ends as files of another kind do; this one is "json", "csv",
-/// "vtu", "pvd" or "structure", which is holdfast JSON.
+/// "svg", "vtu", "pvd" or "structure", which is holdfast JSON.
 void expect_ending(const std::string& path, std::string_view kind);
 
 /// A path as the system has it, from what Python's open() takes. Raises holdfast.Error for what can

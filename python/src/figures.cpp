@@ -7,8 +7,8 @@
 namespace holdfast::python {
 namespace {
 
-io::FigureOptions figure_of(const py::handle& size, const py::handle& view,
-                            const py::handle& title, bool is_grey, bool has_legend) {
+io::FigureOptions figure_of(const py::handle& size, const py::handle& view, const py::handle& title,
+                            bool is_grey, bool has_legend) {
   io::FigureOptions figure{
       .has_legend = has_legend, .title = utf8_of(title, "title"), .is_grey = is_grey};
   if (!size.is_none()) {

@@ -339,8 +339,10 @@ void add_steps(py::module_& module) {
                  [&](std::ostream& out) { write_steps_json(out, s.file, s.result); });
            })
       .def("text", [](const JudgedSteps& s) { return steps_text(s.file, s.result); })
-      .def("svg", [](const JudgedSteps& s,
-                     const io::FigureOptions& figure) { return steps_svg(s.file, s.result, figure); })
+      .def("svg",
+           [](const JudgedSteps& s, const io::FigureOptions& figure) {
+             return steps_svg(s.file, s.result, figure);
+           })
       .def("state_svg",
            [](const JudgedSteps& s, std::optional<std::size_t> step,
               const io::FigureOptions& figure) {

@@ -8,6 +8,7 @@ import html
 import json
 import pathlib
 import re
+import struct
 import subprocess
 import sys
 import xml.etree.ElementTree as ET
@@ -413,3 +414,48 @@ def test_nothing_jumps_in_a_film():
         places.append(axes.transData.transform(projected(axes, np.zeros((1, 3)))[:, :2]))
     assert places[0] == pytest.approx(places[1])
     pyplot.close('all')
+
+
+def test_a_picture_is_written_as_its_name_says(tmp_path):
+    report = holdfast.Robot([[0, 0, 0], [0, 0, 1]]).check()
+    for name, begin in (('a.svg', b'<svg'), ('a.png', b'\x89PNG'), ('a.pdf', b'%PDF')):
+        report.save_figure(tmp_path / name, size=(640, 480), view=(-60, 30), legend=False)
+        assert (tmp_path / name).read_bytes().startswith(begin)
+    width, height = struct.unpack('>II', (tmp_path / 'a.png').read_bytes()[16:24])
+    assert (width, height) == (640, 480)
+
+
+def test_a_picture_does_what_it_is_asked():
+    report = holdfast.Robot([[0, 0, 0], [0, 0, 1]]).check()
+    assert 'width="500"' in report.svg(size=500)
+    assert 'Top view' in report.svg(view='top')
+    assert '>foot</text>' in report.svg(title='foot')
+    assert 'class="legend"' in report.svg() and 'class="legend"' not in report.svg(legend=False)
+    assert report.svg(grey=True) != report.svg()
+    for options, said in (({'size': 3}, '16 to 20000 pixels'), ({'view': 'below'}, 'expected iso'),
+                          ({'view': (0, 99)}, '0 to 90')):
+        with pytest.raises(holdfast.Error, match=said):
+            report.svg(**options)
+
+
+def test_steps_are_drawn_one_by_one_and_side_by_side():
+    robot = holdfast.Robot([[0, 0, 0]])
+    judged = holdfast.steps(robot, [{'attach': [[x, 0, 0]]} for x in range(1, 4)])
+    strip = judged.strip().svg()
+    assert strip.count('class="frame"') == 4
+    assert [strip.count(f'>after step {step}<') for step in range(4)] == [1, 1, 1, 0]
+    assert 'after step 1' in judged.state(1).svg()
+    assert 'start' in judged.state(None).svg()
+    with pytest.raises(holdfast.Error, match='expected a step from 0 to 2, or start; found 3'):
+        judged.state(3).svg()
+
+
+def test_a_strip_of_many_steps_has_the_first_unsafe_one():
+    robot = holdfast.Robot([[0, 0, 0]], fixed=[[0, 0, 0]])
+    judged = holdfast.steps(robot, [{'attach': [[x, 0, 0]]} for x in range(1, 41)])
+    unsafe = judged.first_unsafe[0]
+    strip = judged.strip().svg()
+    assert strip.count('class="frame"') <= 24
+    for step in (unsafe, 39):
+        assert f'>after step {step}<' in strip
+    assert strip.count('>OVERLOAD<') >= 1

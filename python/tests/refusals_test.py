@@ -113,6 +113,8 @@ SAVERS = {
     'save_json': (lambda path: ROBOT.check().save_json(path), 'JSON', ['.json']),
     'save_csv': (lambda path: ROBOT.check().save_csv(path), 'CSV', ['.csv']),
     'save_svg': (lambda path: ROBOT.check().save_svg(path), 'SVG', ['.svg']),
+    'save_figure': (lambda path: ROBOT.check().save_figure(path), 'SVG, PNG or PDF',
+                    ['.svg', '.png', '.pdf', '.PNG']),
     'save_vtu': (lambda path: ROBOT.check().save_vtu(path), "VTK's XML format", ['.vtu']),
     'save_vtk': (lambda path: holdfast.steps(ROBOT).save_vtk(path), 'a list of .vtu files',
                  ['.pvd']),

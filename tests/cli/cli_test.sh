@@ -588,7 +588,20 @@ expect_line angles.svg 'View from azimuth -60 and elevation 30 degrees'
 expect_exit 0 steps "$repository/scenarios/plan/walk_over_beam.json" -q --svg walk.svg --title Walk
 expect_line walk.svg '>Walk: 6 steps, safe<'
 expect_exit 64 steps "$repository/scenarios/plan/walk_over_beam.json" --svg walk.svg --view top
-expect_line err "no option '--view'"
+expect_line err '^holdfast steps: --view and --no-legend require --step or --strip'
+walk=$repository/scenarios/plan/walk_over_beam.json
+expect_exit 0 steps "$walk" -q --svg strip.svg --strip --view front
+[ "$(grep -c 'class="frame"' strip.svg)" -eq 7 ] || fault "a film strip of the start and 6 steps"
+expect_exit 0 steps "$walk" -q --svg step.svg --step 2 --no-legend
+grep -q '>walk over a beam, after step 2<' step.svg || fault "the robot after step 2"
+expect_exit 0 steps "$walk" -q --svg step.svg --step start
+expect_exit 65 steps "$walk" -q --svg step.svg --step 6
+expect_line err 'expected a step from 0 to 5, or start; found 6$'
+expect_exit 64 steps "$walk" --svg step.svg --step -1
+expect_line err 'expected a step from 0, or start'
+expect_exit 64 steps "$walk" --strip
+expect_line err '^holdfast steps: --strip requires --svg$'
+expect_exit 64 steps "$walk" --svg step.svg --strip --step 1
 expect_exit 64 check "$safe" --view front
 expect_line err '^holdfast check: --view requires --svg$'
 expect_exit 64 check "$safe" --svg a.svg --view frond
@@ -806,7 +819,6 @@ expect_exit 65 view missing.json --no-open
 expect_exit 65 view "$safe" --no-open --out /nowhere/page.html
 
 # Sequences of steps: exit codes, keys that other tools rely on, what cannot be done.
-walk=$scenarios/plan/walk_over_beam.json
 expect_exit 0 steps "$walk" --json steps.json --svg steps.svg --html steps.html --vtk steps.pvd
 expect_line out '^SAFE +walk over a beam$'
 expect_line out '6 of 6 steps safe in all stages; largest load ratio 0\.7500, smallest margin \+12'

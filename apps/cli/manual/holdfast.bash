@@ -16,12 +16,12 @@ _holdfast() {
         --support-z) : ;;
         --pitch) : ;;
         --json) files=1 ;;
-        --connections) : ;;
+        --connections) words="all broken" ;;
         --csv) files=1 ;;
         --svg) files=1 ;;
         --size) : ;;
         --title) : ;;
-        --view) : ;;
+        --view) words="iso front side top" ;;
         --vtk) files=1 ;;
         --html) files=1 ;;
         --certificate) files=1 ;;
@@ -29,7 +29,7 @@ _holdfast() {
         --up-to) : ;;
         --scatter) : ;;
         --scatter-common) : ;;
-        --scatter-law) : ;;
+        --scatter-law) words="lognormal normal weibull" ;;
         --probability) : ;;
         --lose) : ;;
         --lose-seconds) : ;;
@@ -49,10 +49,12 @@ _holdfast() {
         --svg) files=1 ;;
         --size) : ;;
         --title) : ;;
+        --view) words="iso front side top" ;;
+        --step) words="start" ;;
         --html) files=1 ;;
         --vtk) files=1 ;;
         --threads) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --json --svg --size --title --grey --html --vtk --until-unsafe --verify -q --quiet --threads"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --json --svg --size --title --grey --view --no-legend --step --strip --html --vtk --until-unsafe --verify -q --quiet --threads"; else files=1; fi ;;
       esac
       ;;
     next)
@@ -66,7 +68,7 @@ _holdfast() {
         --svg) files=1 ;;
         --size) : ;;
         --title) : ;;
-        --view) : ;;
+        --view) words="iso front side top" ;;
         --limit) : ;;
         --threads) : ;;
         --memory) : ;;
@@ -133,13 +135,13 @@ _holdfast() {
         --withdraw) : ;;
         --attach) : ;;
         --json) files=1 ;;
-        --connections) : ;;
+        --connections) words="all broken" ;;
         --trace) files=1 ;;
         --story) files=1 ;;
         --svg) files=1 ;;
         --size) : ;;
         --title) : ;;
-        --view) : ;;
+        --view) words="iso front side top" ;;
         *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --steps --stages --next --json --connections --trace --story --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
       esac
       ;;
@@ -163,11 +165,11 @@ _holdfast() {
         --attach) : ;;
         --time) : ;;
         --json) files=1 ;;
-        --connections) : ;;
+        --connections) words="all broken" ;;
         --svg) files=1 ;;
         --size) : ;;
         --title) : ;;
-        --view) : ;;
+        --view) words="iso front side top" ;;
         *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --board --image --pages --seed --kill --reset --cut --flip --plan --withdraw --attach --time --json --connections --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
       esac
       ;;

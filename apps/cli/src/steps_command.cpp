@@ -189,8 +189,8 @@ int run(const StepsArguments& options) {
   if (options.step.empty() && !options.is_strip &&
       (!figure.view.is_isometric || !figure.has_legend)) {
     fmt::print(stderr,
-               "holdfast: curves have no view and no legend; expected --step or --strip "
-               "beside --view or --no-legend\n");
+               "holdfast steps: --view and --no-legend require --step or --strip, as curves have "
+               "neither\n");
     return kExitUsage;
   }
   const std::vector<std::string> inputs = {options.file};

@@ -47,8 +47,8 @@ struct StripFrame {
   std::span<const model::Obstacle> obstacles = {};
 };
 
-/// Returns an SVG with states side by side, all to one scale, each with its verdict and largest load
-/// ratio. Modules are coloured as in write_svg(). The views of `frames`, of which there must be
+/// Returns an SVG with states side by side, all to one scale, each with its verdict and largest
+/// load ratio. Modules are coloured as in write_svg(). The views of `frames`, of which there must be
 /// some, must outlive the call.
 std::string write_strip_svg(std::span<const StripFrame> frames, std::string_view title,
                             const FigureOptions& figure = {});
