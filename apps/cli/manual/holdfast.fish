@@ -57,7 +57,7 @@ complete -c holdfast -n '__fish_seen_subcommand_from steps' -l view -x -a 'iso f
 complete -c holdfast -n '__fish_seen_subcommand_from steps' -l no-legend -d 'Leave out the legend'
 complete -c holdfast -n '__fish_seen_subcommand_from steps' -l step -x -a 'start' -d 'Draw the robot after this step, with its loads, in place of the curves: a number from 0, or start [not with --strip]'
 complete -c holdfast -n '__fish_seen_subcommand_from steps' -l strip -d 'Draw the start and the robot after each step side by side, up to 24 of them, in place of the curves [not with --step]'
-complete -c holdfast -n '__fish_seen_subcommand_from steps' -l html -r -F -d 'Write a page with that picture and the report [not with --verify]'
+complete -c holdfast -n '__fish_seen_subcommand_from steps' -l html -r -F -d 'Write a page with the curves, the states side by side and the report [not with --verify]'
 complete -c holdfast -n '__fish_seen_subcommand_from steps' -l vtk -r -F -d 'Write a .pvd file for ParaView, and a .vtu file beside it for every step [not with --verify]'
 complete -c holdfast -n '__fish_seen_subcommand_from steps' -l until-unsafe -d 'Leave out the steps behind the first unsafe one [not with --verify]'
 complete -c holdfast -n '__fish_seen_subcommand_from steps' -l verify -d 'FILE is a certificate that there is no order, of holdfast order: replay it [not with --json, --svg, --html, --vtk, --until-unsafe]'

@@ -104,7 +104,10 @@ bool write_files(const StepsArguments& options, const StepsFile& file, const Ste
   }
   is_written = write_picture(options, file, result) && is_written;
   if (!options.html.empty()) {
-    is_written = write_or_complain(options.html, steps_html(file, result)) && is_written;
+    is_written =
+        write_or_complain(options.html,
+                          steps_html(file, result, {.thread_count = options.thread_count})) &&
+        is_written;
   }
   return is_written && (options.vtk.empty() || write_series(options, file, result));
 }
@@ -257,7 +260,8 @@ Command add_steps(CLI::App& app) {
              "Write the whole report as JSON; - is standard output");
   add_figure(*command, options->figure, "Draw verdicts, load ratio and margin along the sequence");
   add_states(*command, *options);
-  add_output(*command, "--html", options->html, "Write a page with that picture and the report");
+  add_output(*command, "--html", options->html,
+             "Write a page with the curves, the states side by side and the report");
   add_output(*command, "--vtk", options->vtk,
              "Write a .pvd file for ParaView, and a .vtu file beside it for every step");
   command->add_flag("--until-unsafe", options->ends_when_unsafe,

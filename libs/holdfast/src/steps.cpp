@@ -82,10 +82,6 @@ std::string steps_svg(const StepsFile& file, const StepsResult& result,
   return io::write_steps_svg(entry_of(file, result), figure);
 }
 
-std::string steps_html(const StepsFile& file, const StepsResult& result) {
-  return io::write_steps_html(entry_of(file, result));
-}
-
 namespace {
 
 /// Calls `visit(state, pieces)` for the start, state 0, and for the robot after each step that was
@@ -274,6 +270,13 @@ base::Result<std::string> steps_strip_svg(const StepsFile& file, const StepsResu
                       .obstacles = state.spec.obstacles});
   }
   return io::write_strip_svg(frames, file.name, figure);
+}
+
+std::string steps_html(const StepsFile& file, const StepsResult& result,
+                       const StepsOptions& options) {
+  const auto strip = steps_strip_svg(file, result, {}, options);
+  return io::write_steps_html(entry_of(file, result),
+                              strip ? std::string_view(strip.value()) : std::string_view());
 }
 
 std::string steps_text(const StepsFile& file, const StepsResult& result) {

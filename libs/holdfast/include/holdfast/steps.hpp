@@ -72,7 +72,10 @@ base::Result<std::string> steps_strip_svg(const StepsFile& file, const StepsResu
                                           const io::FigureOptions& figure = {},
                                           const StepsOptions& options = {});
 
-std::string steps_html(const StepsFile& file, const StepsResult& result);
+/// A page with the curves, the film strip where the robot stays in one piece, and the report for
+/// people.
+std::string steps_html(const StepsFile& file, const StepsResult& result,
+                       const StepsOptions& options = {});
 
 /// Writes a series for ParaView: `path`, a .pvd file, and beside it a .vtu file for the start and
 /// for the robot after each step that was judged, or for each of its pieces. Error: one cannot be

@@ -206,14 +206,15 @@ std::string write_steps_svg(const StepsEntry& entry, const FigureOptions& figure
   return finished(out + "</svg>\n", figure);
 }
 
-std::string write_steps_html(const StepsEntry& entry) {
+std::string write_steps_html(const StepsEntry& entry, std::string_view strip) {
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<title>{0} - holdfast "
       "steps</title>\n<style>body {{ font-family: sans-serif; margin: 2em; }} svg {{ max-width: "
-      "100%; height: auto; }} pre {{ overflow-x: auto; }}</style>\n<h1>{0}: {1}</h1>\n{2}<pre>{3}"
+      "100%; height: auto; }} pre {{ overflow-x: auto; }}</style>\n<h1>{0}: "
+      "{1}</h1>\n{2}{4}<pre>{3}"
       "</pre>\n</html>\n",
       escape(entry.name), verdict::name(entry.judgement->verdict()), write_steps_svg(entry),
-      escape(write_steps_text(entry)));
+      escape(write_steps_text(entry)), strip);
 }
 
 }  // namespace holdfast::io

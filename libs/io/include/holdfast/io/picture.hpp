@@ -48,8 +48,8 @@ struct StripFrame {
 };
 
 /// Returns an SVG with states side by side, all to one scale, each with its verdict and largest
-/// load ratio. Modules are coloured as in write_svg(). The views of `frames`, of which there must be
-/// some, must outlive the call.
+/// load ratio. Modules are coloured as in write_svg(). The views of `frames`, of which there must
+/// be some, must outlive the call.
 std::string write_strip_svg(std::span<const StripFrame> frames, std::string_view title,
                             const FigureOptions& figure = {});
 

@@ -46,7 +46,8 @@ std::string write_steps_text(const StepsEntry& entry);
 /// step; of long sequences some steps together, by their worst. Self-contained.
 std::string write_steps_svg(const StepsEntry& entry, const FigureOptions& figure = {});
 
-/// A page with the picture and the report for people. Self-contained, without scripts.
-std::string write_steps_html(const StepsEntry& entry);
+/// A page with the picture, a film strip in SVG if there is one, and the report for people.
+/// Self-contained, without scripts.
+std::string write_steps_html(const StepsEntry& entry, std::string_view strip = {});
 
 }  // namespace holdfast::io
