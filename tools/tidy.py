@@ -37,8 +37,8 @@ FRAGMENT = re.compile(r'(After|Also|And|As|At|Before|But|By|False|For|From|In|It
 FREESTANDING = {'base', 'boards', 'mechanics', 'agent', 'module'}
 APPLICATIONS = ('apps/', 'examples/', 'python/')
 FACADE_HEADERS = {'holdfast', 'distributed', 'emulated', 'exit_code', 'figure_file', 'file_ending',
-                  'losses', 'move', 'order', 'reliability', 'simulated_next', 'simulated_stages',
-                  'simulated_steps', 'steps', 'trial'}
+                  'instrument', 'losses', 'move', 'order', 'reliability', 'simulated_next',
+                  'simulated_stages', 'simulated_steps', 'steps', 'trial'}
 HOSTED_HEADERS = {'string', 'vector', 'map', 'set', 'memory', 'iostream', 'fstream', 'variant',
                   'cstdio', 'cstdlib', 'functional', 'stdexcept'}
 # base is freestanding but for what says in its first lines that it is for hosts.
@@ -116,7 +116,7 @@ def check_includes(name, lines, links):
         elif (include and name.startswith(APPLICATIONS)
                 and include[1] not in FACADE_HEADERS):
             fault(name, number, 'applications include only the facade, holdfast/holdfast.hpp, '
-                                'trial.hpp, distributed.hpp and emulated.hpp')
+                                'trial.hpp, distributed.hpp, emulated.hpp, instrument.hpp')
         system = re.match(r'#include <(\w+)>', line)
         if (match and match[1] in FREESTANDING and name not in HOSTED_FILES and system
                 and system[1] in HOSTED_HEADERS):

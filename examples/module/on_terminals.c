@@ -1,9 +1,11 @@
 /* SPDX-FileCopyrightText: The holdfast authors
    SPDX-License-Identifier: Apache-2.0
 
-   on_terminals PAGE [FACE=TERMINAL]... [plan=X,Y,Z]   one module of a robot as a process: its lines
-   are pseudo-terminals, or serial adapters. FACE is 0 to 5 for +x, -x, +y, -y, +z, -z; PAGE is what
-   `holdfast emulate FILE --pages FOLDER` writes. Prints each verdict that it comes to. */
+   on_terminals PAGE [FACE=TERMINAL]... [plan=X,Y,Z] [id=N]   one module of a robot as a process: its
+   lines are pseudo-terminals, or serial adapters. FACE is 0 to 5 for +x, -x, +y, -y, +z, -z; PAGE is
+   what `holdfast emulate FILE --pages FOLDER` writes. With an id the page may be missing: the module
+   waits for what `holdfast tell` tells it, and keeps that in PAGE. Prints each verdict that it comes
+   to. */
 #define _DEFAULT_SOURCE
 #include <fcntl.h>
 #include <holdfast.h>
@@ -14,6 +16,7 @@
 #include <time.h>
 #include <unistd.h>
 
+static const char* page_name;
 static struct pollfd lines[HF_FACES]; /* A line that is not there has the number -1. */
 
 static uint32_t now(void* context) {
@@ -38,6 +41,14 @@ static void send_bytes(void* context, int face, const uint8_t* bytes, size_t siz
   }
 }
 
+static void keep_page(void* context, const void* page) {
+  (void)context;
+  FILE* const file = fopen(page_name, "wb");
+  if (file == NULL || fwrite(page, 1, HF_PAGE_BYTES, file) != HF_PAGE_BYTES || fclose(file) != 0) {
+    perror(page_name);
+  }
+}
+
 void hf_panic(const char* condition, const char* file, int line) {
   fprintf(stderr, "%s:%d: %s\n", file, line, condition);
   abort();
@@ -59,20 +70,32 @@ static int open_line(const char* name) {
 int main(int argc, char** argv) {
   static uint64_t memory[HF_BYTES / 8];
   static uint8_t page[HF_PAGE_BYTES];
-  FILE* const file = argc > 1 ? fopen(argv[1], "rb") : NULL;
-  if (file == NULL || fread(page, 1, sizeof page, file) != sizeof page) {
-    fprintf(stderr, "usage: on_terminals PAGE [FACE=TERMINAL]... [plan=X,Y,Z]\n");
+  unsigned id = 0;
+  for (int i = 2; i < argc; ++i) {
+    sscanf(argv[i], "id=%u", &id);
+  }
+  page_name = argc > 1 ? argv[1] : "";
+  FILE* const file = fopen(page_name, "rb");
+  if ((file == NULL || fread(page, 1, sizeof page, file) != sizeof page) && id == 0) {
+    fprintf(stderr, "usage: on_terminals PAGE [FACE=TERMINAL]... [plan=X,Y,Z] [id=N]\n");
     return 64;
+  }
+  if (file != NULL) {
+    fclose(file);
   }
   for (int face = 0; face < HF_FACES; ++face) {
     lines[face] = (struct pollfd){-1, POLLIN, 0};
   }
-  const hf_config config = {
-      .port = {.now = now, .random = draw, .is_line_free = is_line_free, .send = send_bytes},
-      .page = page};
+  const hf_config config = {.port = {.now = now,
+                                     .random = draw,
+                                     .is_line_free = is_line_free,
+                                     .send = send_bytes,
+                                     .keep_page = keep_page},
+                            .page = page,
+                            .id = id};
   hf_module* const module = hf_init(memory, sizeof memory, &config);
   if (module == NULL) {
-    fprintf(stderr, "%s: no configuration of this version\n", argv[1]);
+    fprintf(stderr, "%s: no configuration of this version\n", page_name);
     return 65;
   }
   for (int i = 2; i < argc; ++i) {

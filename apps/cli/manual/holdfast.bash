@@ -4,7 +4,7 @@ _holdfast() {
   local words='' files=''
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
-    mapfile -t COMPREPLY < <(compgen -W "check steps next order move simulate emulate convert generate robots view -h --help -V --version" -- "$current")
+    mapfile -t COMPREPLY < <(compgen -W "check steps next order move simulate emulate listen tell twin convert generate robots view -h --help -V --version" -- "$current")
     return
   fi
   case ${COMP_WORDS[1]} in
@@ -171,6 +171,37 @@ _holdfast() {
         --title) : ;;
         --view) words="iso front side top" ;;
         *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --board --image --pages --seed --kill --reset --cut --flip --plan --withdraw --attach --time --json --connections --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
+      esac
+      ;;
+    listen)
+      case $previous in
+        --baud) : ;;
+        --time) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --baud --once --time"; else files=1; fi ;;
+      esac
+      ;;
+    tell)
+      case $previous in
+        --robot) : ;;
+        --lattice) : ;;
+        --set) : ;;
+        --support-z) : ;;
+        --pitch) : ;;
+        --baud) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --baud"; else files=1; fi ;;
+      esac
+      ;;
+    twin)
+      case $previous in
+        --also) : ;;
+        --robot) : ;;
+        --lattice) : ;;
+        --set) : ;;
+        --support-z) : ;;
+        --pitch) : ;;
+        --baud) : ;;
+        --time) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --also --robot --lattice --set --support-z --pitch --allow-unknown --baud --time -q --quiet"; else files=1; fi ;;
       esac
       ;;
     convert)

@@ -36,12 +36,15 @@ Command add_check(CLI::App& app);
 Command add_convert(CLI::App& app);
 Command add_emulate(CLI::App& app);
 Command add_generate(CLI::App& app);
+Command add_listen(CLI::App& app);
 Command add_move(CLI::App& app);
 Command add_next(CLI::App& app);
 Command add_order(CLI::App& app);
 Command add_robots(CLI::App& app);
 Command add_simulate(CLI::App& app);
 Command add_steps(CLI::App& app);
+Command add_tell(CLI::App& app);
+Command add_twin(CLI::App& app);
 Command add_view(CLI::App& app);
 
 /// The verdict in capitals, coloured on a terminal, padded to the longest.

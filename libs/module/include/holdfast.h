@@ -63,6 +63,12 @@ typedef struct {
      and listens to them. Else lines carry whole packets, for boards with frames of their own: is
      there a neighbour at this face now? */
   bool (*is_connected)(void* context, int face);
+  /* Keeps HF_PAGE_BYTES over a loss of power, and hands them in again as hf_config.page: what the
+     module has been told of its robot and of itself. Null: it forgets. May take a while. */
+  void (*keep_page)(void* context, const void* page);
+  /* How deep the stack has been, for instruments. Null, or 0: not known. */
+  size_t (*stack_bytes)(void* context);
+  uint8_t reset_reason; /* The board's own flags, for instruments; 0: not known. */
 } hf_port;
 
 /* Who a module is. */
@@ -75,8 +81,10 @@ typedef struct {
 
 typedef struct {
   hf_port port;                /* Copied. */
-  const void* page;            /* HF_PAGE_BYTES; copied. */
+  const void* page;            /* HF_PAGE_BYTES; copied. Null, or one that is damaged: see id. */
   const hf_identity* identity; /* Null: as the page says. */
+  uint32_t id; /* hf_id(), instead of the page's, and a module without a page waits until it is told
+                  its robot's numbers at a face (holdfast tell); 0: the page is needed. */
   void* keep; /* HF_KEEP_BYTES that a reset leaves alone, for plans; null: a reset forgets them. */
 } hf_config;
 
@@ -117,6 +125,14 @@ uint32_t hf_poll(hf_module* module);
 void hf_plan(hf_module* module, int32_t x, int32_t y, int32_t z);
 void hf_withdraw(hf_module* module, int32_t x, int32_t y, int32_t z);
 void hf_withdraw_all(hf_module* module);
+
+/* Tells the module itself that it sits in a cell and is the anchor, or whether it is held from
+   outside. It keeps that with its page, and starts anew at the next hf_poll(). */
+void hf_set_anchor(hf_module* module, int32_t x, int32_t y, int32_t z);
+void hf_set_fixed(hf_module* module, bool is_fixed);
+
+/* An id from the chip's unique number, never 0. */
+uint32_t hf_id(const void* unique_number, size_t size);
 
 /* Up to date after each hf_poll(). */
 const hf_status* hf_get_status(const hf_module* module);

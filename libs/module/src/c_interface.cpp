@@ -6,7 +6,7 @@
 #include <new>
 
 #include "holdfast.h"
-#include "holdfast/module/module.hpp"
+#include "holdfast/module/program.hpp"
 #include "holdfast/module/serial_port.hpp"
 
 namespace holdfast::module {
@@ -36,6 +36,19 @@ class Board {
 
   void send(int face, const std::uint8_t* bytes, std::size_t size) {
     port_.send(port_.context, face, bytes, size);
+  }
+
+  Health health() {
+    const std::size_t stack = port_.stack_bytes == nullptr ? 0 : port_.stack_bytes(port_.context);
+    constexpr std::size_t kMost = 0xffff;
+    return {.reset_reason = port_.reset_reason,
+            .stack_bytes = static_cast<std::uint16_t>(stack < kMost ? stack : kMost)};
+  }
+
+  void keep(std::span<const std::uint8_t> page) {
+    if (port_.keep_page != nullptr) {
+      port_.keep_page(port_.context, page.data());
+    }
   }
 
   void show(const agent::Colour& colour) {
@@ -108,6 +121,10 @@ class ByteLines final : public SerialPort {
 
   void show(const agent::Colour& colour) override { board_.show(colour); }
 
+  Health health() override { return board_.health(); }
+
+  void keep(std::span<const std::uint8_t> page) override { board_.keep(page); }
+
   std::size_t take(int face, std::span<const std::uint8_t> bytes) {
     Ring& ring = rings_[static_cast<std::size_t>(face)];
     std::size_t taken = 0;
@@ -158,6 +175,10 @@ class PacketLines final : public Port {
   bool is_connected(int face) override { return board_.is_connected(face); }
 
   void show(const agent::Colour& colour) override { board_.show(colour); }
+
+  Health health() override { return board_.health(); }
+
+  void keep(std::span<const std::uint8_t> page) override { board_.keep(page); }
 
   bool receive(Incoming& incoming) override {
     for (int i = 0; i < base::kDirectionCount; ++i) {
@@ -211,13 +232,14 @@ class PacketLines final : public Port {
 
 constexpr std::size_t larger(std::size_t a, std::size_t b) { return a > b ? a : b; }
 
+/// Who the module is and what it knows; false: it neither has a page nor may wait for one.
 bool take_page(const hf_config& config, Configuration& configuration) {
   auto* const to = reinterpret_cast<std::uint8_t*>(&configuration);
-  for (std::size_t i = 0; i < kConfigurationBytes; ++i) {
+  for (std::size_t i = 0; config.page != nullptr && i < kConfigurationBytes; ++i) {
     to[i] = static_cast<const std::uint8_t*>(config.page)[i];
   }
   if (!is_valid(configuration)) {
-    return false;
+    return config.id != 0;
   }
   agent::prepare(configuration.setup);  // What the page has no room for.
   if (config.identity != nullptr) {
@@ -226,6 +248,7 @@ bool take_page(const hf_config& config, Configuration& configuration) {
                               .is_fixed = own.is_fixed,
                               .is_anchor = own.is_anchor,
                               .cell = {own.x, own.y, own.z}};
+    configuration.checksum = checksum_of(configuration);
   }
   return true;
 }
@@ -237,13 +260,12 @@ namespace hfm = holdfast::module;
 
 /// All that one module is; the port and the program in memory of their own, as they are made last.
 struct hf_module {
-  hfm::Configuration configuration;
   hfm::PlanMemory plans;
   hfm::ByteLines* bytes = nullptr;  ///< One of these two.
   hfm::PacketLines* packets = nullptr;
-  hfm::Module* program = nullptr;
+  hfm::Program* program = nullptr;
   alignas(8) std::byte port[hfm::larger(sizeof(hfm::ByteLines), sizeof(hfm::PacketLines))];
-  alignas(8) std::byte module[sizeof(hfm::Module)];
+  alignas(8) std::byte module[sizeof(hfm::Program)];
 };
 
 // holdfast.h says the same as the program.
@@ -275,10 +297,11 @@ hf_module* hf_init(void* memory, size_t size, const hf_config* config) {
       reinterpret_cast<std::uintptr_t>(memory) % 8 != 0) {
     return nullptr;
   }
-  auto* const self = new (memory) hf_module;
-  if (!hfm::take_page(*config, self->configuration)) {
+  hfm::Configuration configuration;
+  if (!hfm::take_page(*config, configuration)) {
     return nullptr;
   }
+  auto* const self = new (memory) hf_module;
   hfm::Port* port = nullptr;
   if (config->port.is_connected == nullptr) {
     port = self->bytes = new (self->port) hfm::ByteLines(config->port);
@@ -287,7 +310,7 @@ hf_module* hf_init(void* memory, size_t size, const hf_config* config) {
   }
   auto& plans =
       config->keep == nullptr ? self->plans : *static_cast<hfm::PlanMemory*>(config->keep);
-  self->program = new (self->module) hfm::Module(self->configuration, plans, *port);
+  self->program = new (self->module) hfm::Program(configuration, config->id, plans, *port);
   return self;
 }
 
@@ -317,6 +340,19 @@ void hf_withdraw(hf_module* module, int32_t x, int32_t y, int32_t z) {
 }
 
 void hf_withdraw_all(hf_module* module) { module->program->withdraw(holdfast::agent::kEveryCell); }
+
+void hf_set_anchor(hf_module* module, int32_t x, int32_t y, int32_t z) {
+  module->program->tell_who({.what = hfm::Who::What::kAnchor, .cell = {x, y, z}});
+}
+
+void hf_set_fixed(hf_module* module, bool is_fixed) {
+  module->program->tell_who(
+      {.what = is_fixed ? hfm::Who::What::kFixed : hfm::Who::What::kFree, .cell = {}});
+}
+
+uint32_t hf_id(const void* unique_number, size_t size) {
+  return hfm::id_of({static_cast<const std::uint8_t*>(unique_number), size});
+}
 
 const hf_status* hf_get_status(const hf_module* module) {
   return reinterpret_cast<const hf_status*>(&module->program->status());

@@ -14,10 +14,18 @@ std::span<const std::uint8_t> bytes_of(const Value& value) {
 
 }  // namespace
 
+std::span<const std::uint8_t> setup_bytes(const Configuration& configuration) {
+  return bytes_of(configuration.setup).first(kSetupBytes);
+}
+
+std::uint16_t sum_of_setup(std::span<const std::uint8_t> setup_bytes) {
+  return agent::wire::checksum(setup_bytes, kIdentityStart);
+}
+
 std::uint32_t checksum_of(const Configuration& configuration) {
-  return agent::wire::checksum(
-      bytes_of(configuration.setup).first(kSetupBytes),
-      agent::wire::checksum(bytes_of(configuration.identity), kIdentityStart));
+  const auto start = static_cast<std::uint16_t>(kIdentityStart ^ configuration.revision);
+  return agent::wire::checksum(setup_bytes(configuration),
+                               agent::wire::checksum(bytes_of(configuration.identity), start));
 }
 
 bool is_valid(const Configuration& configuration) {

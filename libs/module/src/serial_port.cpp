@@ -43,7 +43,11 @@ void SerialPort::stay_connected() {
 }
 
 void SerialPort::send(int face, std::span<const std::uint8_t> packet) {
-  transmit(face, write_frame(FrameKind::kPacket, packet, buffer(face)));
+  tell(face, FrameKind::kPacket, packet);
+}
+
+void SerialPort::tell(int face, FrameKind kind, std::span<const std::uint8_t> payload) {
+  transmit(face, write_frame(kind, payload, buffer(face)));
 }
 
 void SerialPort::wait(Time until) {

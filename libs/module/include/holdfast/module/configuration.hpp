@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "holdfast/agent/agent.hpp"
 
@@ -14,11 +15,13 @@
 namespace holdfast::module {
 
 inline constexpr std::uint32_t kConfigurationMagic = 0x46434648;  ///< "HFCF"
-inline constexpr std::uint32_t kConfigurationVersion = 1;
+inline constexpr std::uint16_t kConfigurationVersion = 1;
 
 struct Configuration {
   std::uint32_t magic = kConfigurationMagic;
-  std::uint32_t version = kConfigurationVersion;
+  std::uint16_t version = kConfigurationVersion;
+  /// 0: the page was flashed. Else the module was told of it, and a later one holds.
+  std::uint16_t revision = 0;
   agent::Identity identity;
   std::uint32_t checksum = 0;  ///< checksum_of()
   agent::Setup setup;
@@ -42,6 +45,16 @@ static_assert(offsetof(agent::CubeSetup, facet_mm) == 48 &&
               offsetof(agent::CubeSetup, beam_float) == 216 && kSetupBytes == 248);
 static_assert(kConfigurationBytes == 280);
 #endif
+
+/// The bytes of the setup as they lie in a page.
+std::span<const std::uint8_t> setup_bytes(const Configuration& configuration);
+
+/// A sum of the setup alone: the same for all modules of a robot, whoever they are.
+std::uint16_t sum_of_setup(std::span<const std::uint8_t> setup_bytes);
+
+inline std::uint16_t setup_sum(const Configuration& configuration) {
+  return sum_of_setup(setup_bytes(configuration));
+}
 
 /// The checksum of everything but the magic number, the version and the sum itself.
 std::uint32_t checksum_of(const Configuration& configuration);

@@ -22,6 +22,14 @@ namespace holdfast::module {
 enum class FrameKind : std::uint8_t {
   kPacket = 1,  ///< What an agent's link says to its neighbour's; docs/wire.md.
   kPlan = 2,    ///< From outside: a module is planned; three i32, the cell.
+  // Between a module and an instrument, and between modules that are told a configuration; see
+  // status_report.hpp.
+  kAsk = 3,        ///< From an instrument: say how you are.
+  kStatus = 4,     ///< The answer.
+  kLog = 5,        ///< The other answer: what has happened.
+  kWho = 6,        ///< From an instrument: who you are.
+  kRevision = 7,   ///< Which configuration I have.
+  kConfigure = 8,  ///< A part of a configuration.
 };
 
 inline constexpr std::uint8_t kFrameBegin = '~';

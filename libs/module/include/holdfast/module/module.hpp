@@ -70,6 +70,8 @@ class Module {
 
   const Status& status() const { return status_; }
 
+  const agent::Agent& agent() const { return agent_; }
+
  private:
   void tell(agent::EventKind kind, const base::Cell& cell);
   void step(agent::EventKind kind, int face = 0);

@@ -23,6 +23,12 @@ struct Incoming {
   std::span<const std::uint8_t> payload = {};
 };
 
+/// What a board can say of itself.
+struct Health {
+  std::uint8_t reset_reason = 0;  ///< Flags of its own; 0: it does not say.
+  std::uint16_t stack_bytes = 0;  ///< At its deepest since the start; 0: it does not say.
+};
+
 class Port {
  public:
   /// Microseconds since the start; never goes back.
@@ -45,6 +51,15 @@ class Port {
 
   /// Sends a packet. The line must be free.
   virtual void send(int face, std::span<const std::uint8_t> packet) = 0;
+
+  /// Sends a frame of another kind than a packet, as send() does. Boards whose lines carry packets
+  /// alone do nothing, and have neither instruments nor configurations by message.
+  virtual void tell(int /*face*/, FrameKind /*kind*/, std::span<const std::uint8_t> /*payload*/) {}
+
+  /// Keeps the page of configuration, kConfigurationBytes, over a loss of power, if it can.
+  virtual void keep(std::span<const std::uint8_t> /*page*/) {}
+
+  virtual Health health() { return {}; }
 
   virtual void show(const agent::Colour& colour) = 0;
 

@@ -22,6 +22,7 @@ class SerialPort : public Port {
   bool is_connected(int face) final;
   void stay_connected() final;
   void send(int face, std::span<const std::uint8_t> packet) final;
+  void tell(int face, FrameKind kind, std::span<const std::uint8_t> payload) final;
   void wait(Time until) final;
 
  protected:
