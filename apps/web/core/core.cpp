@@ -15,8 +15,11 @@
 #include <vector>
 
 #include "holdfast/distributed.hpp"
+#include "holdfast/losses.hpp"
 #include "holdfast/order.hpp"
+#include "holdfast/reliability.hpp"
 #include "holdfast/steps.hpp"
+#include "insight.hpp"
 #include "packet_log.hpp"
 #include "request.hpp"
 #include "sequence_view.hpp"
@@ -173,6 +176,13 @@ void add_facets(const model::Robot& robot, const verdict::Assessment& assessment
   }
 }
 
+/// Whether linear theory suffices, in words; null where it was not asked.
+Json second_order_json(const verdict::Assessment& assessment) {
+  const auto& second = assessment.second_order;
+  return second ? Json(fmt::format("{}: {}", io::buckling_text(*second), name(second->trust)))
+                : Json();
+}
+
 /// The limit that each connection's load ratio is of; nothing where all of them open.
 void add_limits(const model::Robot& robot, const verdict::Assessment& assessment, Reply& out) {
   if (robot.has_default_connectors()) {
@@ -198,6 +208,7 @@ Reply assessment_reply(const model::Robot& robot, const verdict::Assessment& ass
                    {"weight_factor", optional_json(assessment.weight_factor)},
                    {"contact_model", verdict::name(assessment.contact_model)},
                    {"solves", assessment.equilibrium.steps},
+                   {"second_order", second_order_json(assessment)},
                    {"facet_half_mm", robot.foot_half_width_mm()},
                    {"has_loads", !assessment.connections.empty()},
                    {"seconds", seconds}});
@@ -253,6 +264,109 @@ Reply limit_request(const Request& request) {
       check(robot.value(), {.is_limit_wanted = true,
                             .limit_seconds_max = static_cast<double>(request.header.options[0])});
   return {.text = io::collapse_json(robot.value(), *result.limit), .integers = {}, .numbers = {}};
+}
+
+/// The factor of all loads that options[0] gives in thousandths: of gravity and payloads.
+void scale_loads(model::RobotSpec& spec, double factor) {
+  auto gravity =
+      spec.gravity_m_s2.value_or(std::array<double, 3>{0, 0, -spec.material.gravity_m_s2});
+  for (double& component : gravity) {
+    component *= factor;
+  }
+  spec.gravity_m_s2 = gravity;
+  for (model::Payload& payload : spec.payloads) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      payload.force_n[k] *= factor;
+      payload.torque_nmm[k] *= factor;
+    }
+  }
+}
+
+/// The reply of a check in the deformed shape, under options[0] thousandths of all loads. Its text
+/// has "factor" besides: the share of these loads up to which a stable equilibrium was followed.
+Reply deformed_request(const Request& request) {
+  auto read = spec_of(request);
+  if (!read) {
+    return failure(read.error());
+  }
+  model::RobotSpec spec = std::move(read).value();
+  scale_loads(spec, request.header.options[0] / 1000.0);
+  const auto robot = model::Robot::create(spec);
+  if (!robot) {
+    return failure(robot.error());
+  }
+  const CheckResult result = check(
+      robot.value(), {.is_deformed_wanted = true, .factor_max = 1, .obstacles = spec.obstacles});
+  Reply out = assessment_reply(robot.value(), result.assessment, result.deformed_seconds);
+  Json text = Json::parse(out.text);
+  text["factor"] = result.deformed ? Json(result.deformed->last.factor) : Json();
+  out.text = dump(text);
+  return out;
+}
+
+/// Text: what report_text() says of the probability that every connection holds, where each
+/// strength scatters by options[0] thousandths and all together by options[1], and that as a
+/// number, null where it is not known.
+Reply reliability_request(const Request& request) {
+  const auto robot = robot_of(request);
+  if (!robot) {
+    return failure(robot.error());
+  }
+  const verdict::StrengthScatter scatter{.cv = request.header.options[0] / 1000.0,
+                                         .common_cv = request.header.options[1] / 1000.0};
+  const auto found = find_reliability(check(robot.value()), scatter);
+  return {.text = dump({{"holds", found ? Json(found->holds) : Json()},
+                        {"fails", found ? Json(found->fails) : Json()},
+                        {"text", reliability_text(robot.value(), found)}}),
+          .integers = {},
+          .numbers = {}};
+}
+
+/// Text: what follows from the loss of each single part, as holdfast check --lose-one --json says
+/// it, and in words. Losses that are not judged within options[0] seconds are undecided.
+Reply lose_one_request(const Request& request) {
+  const auto spec = spec_of(request);
+  const auto robot = robot_of(request);
+  if (!robot) {
+    return failure(robot.error());
+  }
+  const plan::LossReport report = plan::lose_each(
+      spec.value(), {.equilibrium = {.thread_count = 1},
+                     .seconds_max = static_cast<double>(request.header.options[0])});
+  std::string text;
+  io::JsonStream json(text, io::JsonStream::Layout::kCompact);
+  json.begin_object();
+  write_lose_one_member(json, robot.value(), report);
+  json.member("text", lose_one_text(report));
+  json.end_object();
+  return {.text = text, .integers = {}, .numbers = {}};
+}
+
+/// Why the worst connection carries what it carries, and single changes with which the robot is
+/// safe. Text: the sentences, and "remedies" as in a report, null for a safe robot. Integers: the
+/// modules that this connection alone holds.
+Reply why_request(const Request& request) {
+  const auto spec = spec_of(request);
+  const auto robot = robot_of(request);
+  if (!robot) {
+    return failure(robot.error());
+  }
+  const verdict::Assessment assessment = check(robot.value()).assessment;
+  Reply out;
+  io::JsonStream json(out.text, io::JsonStream::Layout::kCompact);
+  json.begin_object();
+  json.member("why", why_text(robot.value(), assessment));
+  if (assessment.verdict != verdict::Verdict::kSafe) {
+    write_remedies_member(json, plan::find_remedies(spec.value(), plan::judgement_of(assessment),
+                                                    {.equilibrium = {.thread_count = 1}}));
+  }
+  json.end_object();
+  if (assessment.worst && assessment.is_stable) {
+    for (const std::size_t module : hanging_modules(robot.value(), *assessment.worst)) {
+      out.integers.push_back(static_cast<std::int32_t>(module));
+    }
+  }
+  return out;
 }
 
 /// The trials that were prepared for the same robot and role, or else new ones.
@@ -598,6 +712,22 @@ HOLDFAST_EXPORT(holdfast_check)()->void {
 
 HOLDFAST_EXPORT(holdfast_limit)()->void {
   web::reply = web::limit_request(web::read_request(web::input));
+}
+
+HOLDFAST_EXPORT(holdfast_why)()->void {
+  web::reply = web::why_request(web::read_request(web::input));
+}
+
+HOLDFAST_EXPORT(holdfast_deformed)()->void {
+  web::reply = web::deformed_request(web::read_request(web::input));
+}
+
+HOLDFAST_EXPORT(holdfast_reliability)()->void {
+  web::reply = web::reliability_request(web::read_request(web::input));
+}
+
+HOLDFAST_EXPORT(holdfast_lose_one)()->void {
+  web::reply = web::lose_one_request(web::read_request(web::input));
 }
 
 HOLDFAST_EXPORT(holdfast_try_places)()->void {

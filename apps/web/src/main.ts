@@ -5,12 +5,14 @@ import { ROLE_NAMES, type Role } from './model/cell';
 import { EditedRobot } from './model/edited_robot';
 import { HOLDS } from './model/surroundings';
 import { Workbench, type Tool } from './model/workbench';
-import type { ScaleName } from './view/colours';
+import type { ScaleName, Subject } from './view/colours';
 import { App } from './ui/app';
 import { showFaceLegend, showLegend } from './ui/answer_panel';
 import { byId, icon, make, say, tell } from './ui/dom';
 import { listenToFiles, reportOf, take, write } from './ui/files';
 import { Collapse } from './ui/collapse';
+import { ConnectionTable } from './ui/connections';
+import { DeformedPanel } from './ui/deformed';
 import { openGallery } from './ui/gallery';
 import { Keeper } from './ui/keeper';
 import { KEYS, listenToKeys } from './ui/keyboard';
@@ -20,6 +22,8 @@ import { listenToPointer } from './ui/pointer';
 import { openFirst, showWithoutPicture } from './ui/start';
 import { makeSurroundings } from './ui/surroundings';
 import { Timeline } from './ui/timeline';
+import { LossPanel, Sure } from './ui/what_if';
+import { WhyPanel } from './ui/why';
 
 declare global {
   /** A handle for the browser's console, and for the tests. */
@@ -129,10 +133,10 @@ function makeDialogs(): void {
 
 function makePanel(app: App, keeper: Keeper): void {
   const { bench } = app;
-  showLegend('paper');
+  showLegend('paper', 'connections');
   showFaceLegend('paper');
-  const scale = byId<HTMLSelectElement>('scale');
-  scale.onchange = () => app.setScale(scale.value as ScaleName);
+  const [scale, subject] = ['scale', 'subject'].map((id) => byId<HTMLSelectElement>(id));
+  scale.onchange = subject.onchange = () => app.setColours(scale.value as ScaleName, subject.value as Subject);
   const slider = byId<HTMLInputElement>('exaggeration');
   slider.oninput = () => {
     const factor = app.setExaggeration(Number(slider.value) / 100);
@@ -187,6 +191,7 @@ function makeActions(app: App, player: Player, timeline: Timeline): Record<strin
     redo: () => tellDone(bench.history.redo(), 'done again'),
     f: () => bench.refusesNow() || byId('faces').click(),
     h: () => app.see(),
+    w: () => app.seeWorst(),
     t: () => app.toggleTopple(),
     q: () => turn(-Math.PI / 12),
     e: () => turn(Math.PI / 12),
@@ -213,6 +218,11 @@ function begin(): void {
   makeTools(bench);
   makeDialogs();
   makePanel(app, keeper);
+  new ConnectionTable(app);
+  new WhyPanel(app);
+  new Sure(app);
+  new LossPanel(app);
+  new DeformedPanel(app);
   const actions = makeActions(app, player, timeline);
   listenToPointer(app);
   listenToKeys(app, actions);
@@ -231,7 +241,7 @@ function begin(): void {
   for (const button of document.querySelectorAll<HTMLButtonElement>('[data-save]')) {
     button.onclick = () => {
       byId<HTMLDialogElement>('takeaway').close();
-      void take(bench, app.stage, button.dataset.save!);
+      void take(app, button.dataset.save!);
     };
   }
   void openFirst(app, keeper, new Collapse(app)).then(showReady);

@@ -399,7 +399,7 @@ test('every number that is typed is judged and saved as the program judges it', 
   };
   const fill = (label, value) => typeInto(page, label, String(value));
   await openExample(page, 'arm_breaks_a');
-  await page.click('summary');
+  await page.click('#material-form summary');
   for (const value of [-30, -19.62, -4, -9.81, -1e-3]) {
     await fill('Gravity z', value);
     const { gravity_m_s2: own, material } = await check(`gravity ${value}`);
@@ -625,7 +625,7 @@ test('holdfast check --limit --html hands the page what it has found', async () 
 
 test('a number that cannot be is refused in its field, in words, and nothing is changed', async () => {
   const page = await openPage(browser);
-  await page.click('summary');
+  await page.click('#material-form summary');
   for (const [label, text, words, right] of [
     ['Elastic modulus E', '0', /^0 is not possible: expected 1e-12 to 1e12 MPa\.$/, '100'],
     ['Mass of a module', '-1', /^-1 is not possible/, '0.06106'],

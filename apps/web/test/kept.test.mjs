@@ -24,7 +24,7 @@ test('cells, name and material come back when the page is opened again', async (
   assert.equal(await count(page), 13);
   await attach(page);
   await page.fill('#name', 'my own arm');
-  await page.click('summary');
+  await page.click('#material-form summary');
   await page.getByLabel('Mass of a module').fill('0.07');
   await page.getByLabel('Ground at z').press('Tab');
   // At once: what the page does when it goes away has to do.

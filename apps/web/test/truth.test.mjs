@@ -220,9 +220,10 @@ test('a message never lies over the answer', async () => {
   const page = await openPage(browser);
   await dropFile(page, 'empty.json', '');
   await message(page);
-  const right = await page.locator('.message').evaluate((element) => element.getBoundingClientRect().right);
-  const left = await page.locator('#verdict').evaluate((element) => element.getBoundingClientRect().left);
-  assert.ok(right <= left, `${right} beside ${left}`);
+  const boxOf = async (selector) => page.locator(selector).boundingBox();
+  const [over, verdict, panel] = [await boxOf('.message'), await boxOf('#verdict'), await boxOf('aside')];
+  assert.ok(over.y >= verdict.y + verdict.height, `${over.y} below ${verdict.y} + ${verdict.height}`);
+  assert.ok(over.x + over.width <= panel.x, `${over.x} + ${over.width} beside ${panel.x}`);
 });
 
 test('an error is gone with the robot that it was about', async () => {

@@ -186,7 +186,7 @@ const DEEDS = {
     ]), chance()]);
   },
   async type(page, { pick, chance }) {
-    await page.evaluate(() => (document.querySelector('details').open = true));
+    await page.evaluate(() => (document.querySelector('#material-form').open = true));
     const fields = page.locator('#surroundings input[type=text], #material input');
     const field = chance() < 0.3 ? page.getByLabel('Gravity z') : fields.nth(Math.floor(chance() * (await fields.count())));
     const old = Number(await field.inputValue());
@@ -272,7 +272,9 @@ class Count {
 /** The picture and the panel are those of a page that has just opened the file that this one saves. */
 async function expectFresh(page, fresh, seen, where) {
   const text = await page.evaluate(() => globalThis.holdfast.write(globalThis.holdfast.bench, 0));
-  await fresh.selectOption('#scale', await page.inputValue('#scale'));
+  for (const id of ['#scale', '#subject']) {
+    await fresh.selectOption(id, await page.inputValue(id));
+  }
   await dropFile(fresh, 'walk.json', text);
   await fresh.waitForFunction((source) => globalThis.holdfast.bench.robot.base === source, text);
   await settled(fresh);

@@ -6,15 +6,19 @@ import type { RobotData } from '../model/edited_robot';
 import {
   CoreError,
   type Answer,
+  type DeformedAnswer,
   type FoundOrder,
   type JudgedSteps,
   type LimitLoad,
+  type Losses,
   type OpenedDocument,
   type Output,
   type SimulationChoice,
   type StageLoads,
+  type Sureness,
   type Trace,
   type Trial,
+  type Why,
 } from './types';
 import type { WorkerCall, WorkerReply } from './worker';
 import CoreWorker from './worker?worker&inline';
@@ -52,6 +56,22 @@ export class CoreClient {
 
   limit(robot: RobotData, secondsMax: number): Promise<LimitLoad | null> {
     return this.call('limit', [robot, secondsMax]);
+  }
+
+  why(robot: RobotData): Promise<Why> {
+    return this.call('why', [robot]);
+  }
+
+  deformed(robot: RobotData, factor: number): Promise<DeformedAnswer> {
+    return this.call('deformed', [robot, factor]);
+  }
+
+  reliability(robot: RobotData, scatter: number, together: number): Promise<Sureness> {
+    return this.call('reliability', [robot, scatter, together]);
+  }
+
+  loseOne(robot: RobotData, secondsMax: number): Promise<Losses> {
+    return this.call('loseOne', [robot, secondsMax]);
   }
 
   tryPlaces(robot: RobotData, places: Int32Array, role: Role): Promise<Trial[]> {

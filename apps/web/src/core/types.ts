@@ -59,6 +59,8 @@ export interface Answer {
   weight_factor: number | null;
   contact_model: string;
   solves: number;
+  /** Whether linear theory suffices, in words. */
+  second_order: string | null;
   /** Half the width of all facets. */
   facet_half_mm: number;
   has_loads: boolean;
@@ -132,6 +134,50 @@ export interface StageReport {
   /** In the shift, if something moves: where it is at its worst. */
   waypoint?: number;
 }
+
+/** Single changes of one kind; those with which the robot is safe, best first. */
+export interface RemedyList {
+  safe: { cell: Cell; load_ratio_max: number | null; margin_mm: number | null }[];
+  tried: number;
+  untried: number;
+}
+
+export type RemedyKind = 'module' | 'prop' | 'fixing' | 'removal';
+
+/** Why the worst connection carries what it carries, and what would make a robot hold that does not. */
+export interface Why {
+  /** Sentences; '' where there is nothing to say. */
+  why: string;
+  remedies?: Record<RemedyKind, RemedyList> & { strength_factor: number | null };
+  /** Modules that the worst connection alone holds, in the order of the request. */
+  hanging: Int32Array;
+}
+
+/** How sure it is that every connection holds where strengths scatter. */
+export interface Sureness {
+  holds: number | null;
+  fails: number | null;
+  text: string;
+}
+
+/** What follows from the loss of a connection, a module or a foot. */
+export interface LossAnswer {
+  a?: Cell;
+  b?: Cell;
+  module?: Cell;
+  foot?: Cell;
+  verdict: Verdict;
+  load_ratio_max: number | null;
+  fallen: number;
+}
+
+export interface Losses {
+  lose_one: { holds_all: boolean; losses: number; fatal: LossAnswer[]; undecided: LossAnswer[] };
+  text: string;
+}
+
+/** An answer of the deformed shape; `factor`: of the loads that were asked for, those that it rests on. */
+export type DeformedAnswer = Answer & { factor: number | null };
 
 export interface StageId {
   step: number;

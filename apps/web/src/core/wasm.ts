@@ -8,18 +8,22 @@ import {
   FACET_INTEGERS,
   LOAD_FIELDS,
   type Answer,
+  type DeformedAnswer,
   type Failure,
   type FoundOrder,
   type JudgedSteps,
   type LimitLoad,
+  type Losses,
   type OpenedDocument,
   type Output,
   type SimulationChoice,
   type StageLoads,
+  type Sureness,
   type Trace,
   type Trial,
   type Verdict,
   type Vocabulary,
+  type Why,
 } from './types';
 
 /**
@@ -41,6 +45,10 @@ interface Exports {
   holdfast_open(): void;
   holdfast_check(): void;
   holdfast_limit(): void;
+  holdfast_why(): void;
+  holdfast_deformed(): void;
+  holdfast_reliability(): void;
+  holdfast_lose_one(): void;
   holdfast_try_places(): void;
   holdfast_write(): void;
   holdfast_simulate(): void;
@@ -63,7 +71,7 @@ interface Reply {
 
 type Call =
   | 'vocabulary' | 'open' | 'check' | 'limit' | 'try_places' | 'write' | 'simulate' | 'judge_steps' | 'find_order'
-  | 'stage';
+  | 'stage' | 'why' | 'deformed' | 'reliability' | 'lose_one';
 
 export class Core {
   private constructor(private readonly exports: Exports) {}
@@ -124,24 +132,29 @@ export class Core {
 
   /** The verdict; `firstLook`: of the rigid body alone. Throws CoreError. */
   check(robot: RobotData, firstLook: boolean): Answer {
-    const reply = this.call('check', request(robot, [firstLook ? 1 : 0]));
-    const { integers, numbers, text } = reply;
-    const [connections, broken, facets] = integers;
-    const head = JSON.parse(text) as Answer;
-    const loads = head.has_loads ? LOAD_FIELDS * connections : 0;
-    const forces = loads + FACET_FIELDS * facets;
-    const brokenAt = 3 + 3 * connections;
-    const facetsAt = brokenAt + broken;
-    return {
-      ...head,
-      connections: integers.subarray(3, brokenAt),
-      broken: integers.subarray(brokenAt, facetsAt),
-      facets: integers.subarray(facetsAt, facetsAt + FACET_INTEGERS * facets),
-      limits: integers.subarray(facetsAt + FACET_INTEGERS * facets),
-      loads: numbers.subarray(0, loads),
-      facetForces: numbers.subarray(loads, forces),
-      displacements: numbers.subarray(forces),
-    };
+    return answerOf(this.call('check', request(robot, [firstLook ? 1 : 0])));
+  }
+
+  /** The verdict in the deformed shape, under a factor of all loads. Throws CoreError. */
+  deformed(robot: RobotData, factor: number): DeformedAnswer {
+    return answerOf(this.call('deformed', request(robot, [Math.round(1000 * factor)]))) as DeformedAnswer;
+  }
+
+  /** What the worst connection carries, and what would make the robot hold. Throws CoreError. */
+  why(robot: RobotData): Why {
+    const { text, integers } = this.call('why', request(robot, []));
+    return { ...(JSON.parse(text) as Omit<Why, 'hanging'>), hanging: integers };
+  }
+
+  /** How sure it is, where each strength scatters by a share of itself, and all together. Throws CoreError. */
+  reliability(robot: RobotData, scatter: number, together: number): Sureness {
+    const options = [scatter, together].map((share) => Math.round(1000 * share));
+    return JSON.parse(this.call('reliability', request(robot, options)).text) as Sureness;
+  }
+
+  /** What follows from the loss of each single part. Throws CoreError. */
+  loseOne(robot: RobotData, secondsMax: number): Losses {
+    return JSON.parse(this.call('lose_one', request(robot, [secondsMax])).text) as Losses;
   }
 
   /** The limit load; null if it is not found in time. Throws CoreError. */
@@ -219,6 +232,27 @@ export class Core {
     }
     return reply;
   }
+}
+
+/** The bytes of assessment_reply() in core/core.cpp. */
+function answerOf(reply: Reply): Answer {
+  const { integers, numbers, text } = reply;
+  const [connections, broken, facets] = integers;
+  const head = JSON.parse(text) as Answer;
+  const loads = head.has_loads ? LOAD_FIELDS * connections : 0;
+  const forces = loads + FACET_FIELDS * facets;
+  const brokenAt = 3 + 3 * connections;
+  const facetsAt = brokenAt + broken;
+  return {
+    ...head,
+    connections: integers.subarray(3, brokenAt),
+    broken: integers.subarray(brokenAt, facetsAt),
+    facets: integers.subarray(facetsAt, facetsAt + FACET_INTEGERS * facets),
+    limits: integers.subarray(facetsAt + FACET_INTEGERS * facets),
+    loads: numbers.subarray(0, loads),
+    facetForces: numbers.subarray(loads, forces),
+    displacements: numbers.subarray(forces),
+  };
 }
 
 /** A request about a document; `base` is the text of the file it began with. */

@@ -7,7 +7,9 @@ import { Core } from './wasm';
 
 export interface WorkerCall {
   id: number;
-  name: 'open' | 'check' | 'limit' | 'tryPlaces' | 'write' | 'simulate' | 'judgeSteps' | 'findOrder' | 'stage';
+  name:
+    | 'open' | 'check' | 'limit' | 'tryPlaces' | 'write' | 'simulate' | 'judgeSteps' | 'findOrder' | 'stage' | 'why'
+    | 'deformed' | 'reliability' | 'loseOne';
   values: unknown[];
 }
 

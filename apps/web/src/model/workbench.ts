@@ -13,6 +13,13 @@ export type Tool = 'look' | 'add' | 'remove' | 'paint' | 'obstacle' | 'load';
 /** No more modules than this in one row. */
 export const ROW_MAX = 100;
 
+const touches = (robot: EditedRobot, cell: Cell) =>
+  robot.count === 0 || robot.lattice.neighbours(cell).some((other) => robot.has(other));
+
+/** Whether the tool may put something there: modules touch the robot; obstacles may stand anywhere. */
+export const mayBe = ({ robot, tool }: Workbench, cell: Cell) =>
+  robot.isFree(cell) && (tool === 'obstacle' || touches(robot, cell));
+
 /** What is built, with which tool and where: the page's state, without its picture and the answer. */
 export class Workbench {
   readonly history = new History(new EditedRobot(), (what) => this.robotListeners.forEach((tell) => tell(what)));

@@ -6,7 +6,9 @@ import { FACET_INTEGERS, LOAD_FIELDS, type Answer } from '../core/types';
 import { ROLE_NAMES, Role, cellText, type Cell } from '../model/cell';
 import type { EditedRobot } from '../model/edited_robot';
 import { holdOf, obstacleText, type Vector } from '../model/surroundings';
-import { FIXED, UNKNOWN, UNSTABLE, brokenColour, css, loadColour, type Rgb, type ScaleName } from '../view/colours';
+import {
+  FIXED, LOAD_STEPS, UNKNOWN, UNSTABLE, brokenColour, css, loadColour, stepColours, type Rgb, type ScaleName, type Subject,
+} from '../view/colours';
 import { FACET_LOOKS, FacetState, facetAt, facetCount } from '../view/facets';
 import { byId, make } from './dom';
 
@@ -42,9 +44,7 @@ export function connectionText(robot: EditedRobot, finding: Finding, index: numb
 
 export function showFinding(robot: EditedRobot, finding: Finding | undefined): void {
   const answer = finding?.answer;
-  const section = byId('verdict');
-  const [word, meaning, state] = headline(robot, finding);
-  section.dataset.verdict = state;
+  const [word, meaning] = headline(robot, finding);
   byId('verdict-word').replaceChildren(word, ...(meaning ? [make('small', {}, meaning)] : []));
   byId('verdict-reason').textContent = reason(robot, finding);
   byId('figures').replaceChildren(
@@ -55,7 +55,8 @@ export function showFinding(robot: EditedRobot, finding: Finding | undefined): v
   );
 }
 
-function headline(robot: EditedRobot, finding: Finding | undefined): [string, string, string] {
+/** The verdict in two words, and what it is marked as. */
+export function headline(robot: EditedRobot, finding: Finding | undefined): [string, string, string] {
   if (robot.count === 0) {
     return ['Empty', '', 'none'];
   }
@@ -107,6 +108,9 @@ function figures(robot: EditedRobot, finding: Finding | undefined, answer: Answe
   if (answer) {
     list.push(...stabilityFigures(robot, answer));
   }
+  if (answer?.second_order) {
+    list.push(['Second order', answer.second_order, 'whether linear theory suffices, by the factor of all loads at which it would buckle']);
+  }
   list.push(['Modules', countText(robot)]);
   if (answer?.has_loads) {
     list.push(['Contact', answer.contact_model]);
@@ -145,25 +149,58 @@ function countText(robot: EditedRobot): string {
   return parts.filter((_, i) => counts[i] > 0).join(', ') || 'none';
 }
 
-export function showLegend(scale: ScaleName): void {
-  const bar = make('div', { className: 'bar-scale' });
-  const stops = Array.from({ length: 21 }, (_, i) => `${css(loadColour(scale, i / 20))} ${5 * i}%`);
-  bar.style.background = `linear-gradient(to right, ${stops.join(', ')})`;
-  const ticks = make('div', { className: 'ticks' }, ...['0', '0.25', '0.5', '0.75', '1'].map((t) => make('span', {}, t)));
+export function showLegend(scale: ScaleName, subject: Subject, isOfLosses = false): void {
   const entry = (className: string, colour: string, text: string) => {
     const swatch = make('span', { className: `swatch ${className}` });
     swatch.style.backgroundColor = colour;
     return make('li', {}, swatch, text);
   };
+  const ofLoads = () => (subject === 'connections' ? stepLegend(scale) : shareLegend(scale));
+  const loads = isOfLosses ? [lossLegend(scale)] : ofLoads();
   const list = make(
     'ul',
     { className: 'swatches' },
-    entry('broken', css(brokenColour(scale)), 'breaks'),
+    ...(subject === 'modules' ? [entry('broken', css(brokenColour(scale)), 'breaks')] : []),
     entry('fixed', css(FIXED), 'fixed'),
     entry('', css(UNSTABLE), 'topples'),
     entry('planned', css(UNKNOWN), 'planned'),
   );
-  byId('legend').replaceChildren(bar, ticks, list);
+  byId('legend').replaceChildren(...loads, list);
+}
+
+/** The steps of a connection's load, with their bounds between them. */
+function stepLegend(scale: ScaleName): HTMLElement[] {
+  const colours = stepColours(scale);
+  const bar = make('div', { className: 'steps' });
+  colours.forEach((colour, i) => {
+    const step = make('span', { className: LOAD_STEPS[i] > 1 ? 'breaks' : '' });
+    step.style.backgroundColor = css(colour);
+    bar.append(step);
+  });
+  const ticks = ['0', ...LOAD_STEPS.map((most) => (most === Infinity ? 'more' : String(most)))];
+  return [bar, make('div', { className: 'ticks' }, ...ticks.map((text) => make('span', {}, text)))];
+}
+
+const lossLegend = (scale: ScaleName) => {
+  const entry = (colour: Rgb, text: string) => {
+    const swatch = make('span', { className: 'swatch' });
+    swatch.style.backgroundColor = css(colour);
+    return make('li', {}, swatch, text);
+  };
+  return make(
+    'ul',
+    { className: 'swatches' },
+    entry(brokenColour(scale), 'it does not hold without this module or connection'),
+    entry(loadColour(scale, 0), 'it holds without this connection'),
+  );
+};
+
+/** The colours of modules, without steps. */
+function shareLegend(scale: ScaleName): HTMLElement[] {
+  const bar = make('div', { className: 'bar-scale' });
+  const stops = Array.from({ length: 21 }, (_, i) => `${css(loadColour(scale, i / 20))} ${5 * i}%`);
+  bar.style.background = `linear-gradient(to right, ${stops.join(', ')})`;
+  return [bar, make('div', { className: 'ticks' }, ...['0', '0.25', '0.5', '0.75', '1'].map((t) => make('span', {}, t)))];
 }
 
 /** How many facets do what, and what they look like. */
@@ -200,7 +237,7 @@ export function showFaceLegend(scale: ScaleName): void {
   );
 }
 
-/** One line for each connection of a module; the pointed one is marked. */
+/** One line for each connection of a module; the pointed one is marked. Empty where there is nothing to say. */
 export function showDetails(
   robot: EditedRobot,
   finding: Finding | undefined,
@@ -216,7 +253,7 @@ export function showDetails(
     return text;
   }
   if (!cell || slot === undefined) {
-    panel.replaceChildren(make('p', { className: 'quiet' }, 'Point at a module to see its numbers.'));
+    panel.replaceChildren();
     return cell ? `${cellText(cell)}: empty` : '';
   }
   const title = `${cellText(cell)}, ${ROLE_NAMES[robot.roleAt(slot)]}${

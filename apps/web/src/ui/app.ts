@@ -1,23 +1,26 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
+import { Vector3 } from 'three';
 import { Judge, type Finding } from '../core/judge';
 import { MOTION_FIELDS } from '../core/types';
 import { equal, type Cell } from '../model/cell';
 import { widen, type Box, type EditedRobot } from '../model/edited_robot';
 import type { Change } from '../model/history';
 import type { Place } from '../model/lattice';
-import type { Workbench } from '../model/workbench';
-import type { ScaleName } from '../view/colours';
+import { mayBe, type Workbench } from '../model/workbench';
+import type { ScaleName, Subject } from '../view/colours';
 import { FacetView } from '../view/facets';
 import { Ground } from '../view/ground';
 import { LoadView } from '../view/loads';
 import { ObstacleView } from '../view/obstacles';
-import { RobotView } from '../view/robot_view';
+import { RobotView, type Losses } from '../view/robot_view';
 import { Stage } from '../view/stage';
-import { showDetails, showFaceLegend, showFacetLegend, showFinding, showLegend } from './answer_panel';
-import { byId, clearErrors, say } from './dom';
+import { connectionText, showDetails, showFaceLegend, showFacetLegend, showFinding, showLegend } from './answer_panel';
+import { showChip, trialText } from './chip';
+import { byId, clearErrors, make, say } from './dom';
 import { placeLabels } from './labels';
 import { followTheme, setTheme } from './theme';
+import { Tip } from './tip';
 import { Toppling, topples } from './toppling';
 import { WhereNext } from './where_next';
 
@@ -26,18 +29,24 @@ const DRAWN_CELLS_MAX = 1.5;
 /** A changed robot is shown without its answer if that takes longer. */
 const LATE_MS = 80;
 
-/** In pixels of the canvas; where there is little room the tools stand below it. */
-function coveredByTools(): number {
-  const tools = byId('toolbar');
-  return getComputedStyle(tools).position === 'absolute' ? tools.offsetHeight : 0;
+/** In pixels of the canvas; where there is little room the verdict and the tools stand beside it. */
+function coveredParts(): { top: number; bottom: number } {
+  const height = (part: HTMLElement) => (getComputedStyle(part).position === 'absolute' ? part.offsetHeight : 0);
+  return { top: height(byId('verdict').parentElement!), bottom: height(byId('toolbar')) };
 }
 
-/** What is shown in place of the robot that is built: a moment of a sequence. */
+/** What the picture and the panel are of: the robot that is built, a stage of its steps, its deformed shape. */
+export type Mode = 'build' | 'stage' | 'deformed';
+
+/** What is shown in place of the robot that is built: a moment of a sequence, or of the robot under load. */
 export interface Exhibit {
+  mode: Exclude<Mode, 'build'>;
   robot: EditedRobot;
   finding: Finding;
   /** Of all moments of the sequence. */
   bounds?: Readonly<Box>;
+  /** How much displacements are magnified. */
+  exaggeration?: number;
 }
 
 /** Of modules, and of obstacles as far from them as they are large; further ones would hide the robot. */
@@ -58,14 +67,14 @@ function boundsOf(robot: EditedRobot): Box | undefined {
 
 /** The picture of what is on the workbench, and the answer to it. */
 export class App {
-  readonly stage = new Stage(byId<HTMLCanvasElement>('canvas'), coveredByTools);
+  readonly stage = new Stage(byId<HTMLCanvasElement>('canvas'), coveredParts);
   readonly view = new RobotView(this.stage);
   readonly whereNext: WhereNext;
   /** Of the robot that is built. */
   finding?: Finding;
   private exhibit?: Exhibit;
-  /** Called before something else is shown than the robot that is built. */
-  readonly exhibitListeners: (() => void)[] = [];
+  /** Called before something else is shown than what is built, with what: one mode at a time. */
+  readonly exhibitListeners: ((mode: Mode) => void)[] = [];
   private readonly ground = new Ground();
   private readonly obstacles = new ObstacleView();
   private readonly facets = new FacetView();
@@ -73,14 +82,21 @@ export class App {
   private readonly toppling = new Toppling(this.stage, this.ground, () => {
     byId('topple').textContent = this.isToppled ? 'Stand it up' : 'Let it topple';
   });
+  private readonly tip: Tip;
   private readonly judge = new Judge((finding) => this.found(finding));
   private lateShow = 0;
   private wasUnstable = false;
   private pointedCell?: Cell;
   private pointedSide?: number;
+  /** What is pointed at stays so, wherever the pointer goes. */
+  private isPinned = false;
+  private noted = '';
 
   constructor(readonly bench: Workbench) {
     this.whereNext = new WhereNext(bench, this.view);
+    this.whereNext.onTrial = () => this.showTrial();
+    this.tip = new Tip(this.stage);
+    bench.toolListeners.push(() => this.unpin());
     bench.robotListeners.push((what) => this.changed(what));
     this.stage.robot.add(this.loads.group);
     this.stage.scene.add(this.ground.group, this.obstacles.group, this.facets.mesh);
@@ -95,20 +111,31 @@ export class App {
     return this.exhibit?.robot ?? this.bench.robot;
   }
 
+  get mode(): Mode {
+    return this.exhibit?.mode ?? 'build';
+  }
+
   get isExhibiting(): boolean {
     return this.exhibit !== undefined;
+  }
+
+  /** Modules are drawn elsewhere than where they are built, and stay so. */
+  get isElsewhere(): boolean {
+    return this.isToppled || (this.isExhibiting && this.view.exaggeration > 0);
   }
 
   /** Shows something else than what is built, until that changes; undefined: what is built. */
   setExhibit(exhibit: Exhibit | undefined): void {
     if (exhibit || this.exhibit) {
       this.toppling.stop();
-      const isFirst = !this.exhibit;
+      const isFirst = exhibit !== undefined && this.mode !== exhibit.mode;
       if (isFirst) {
-        this.exhibitListeners.forEach((tell) => tell());
+        this.exhibitListeners.forEach((tell) => tell(exhibit.mode));
         this.straighten();
       }
       this.exhibit = exhibit;
+      this.view.exaggeration = exhibit?.exaggeration ?? 0;
+      this.unpin();
       this.offer();
       this.view.point([]);
       this.whereNext.preview([]);
@@ -136,11 +163,29 @@ export class App {
     }
   }
 
-  setScale(scale: ScaleName): void {
+  /** In which colours, and on what, loads are shown. */
+  setColours(scale: ScaleName, subject: Subject): void {
     this.view.scale = scale;
-    showLegend(scale);
+    this.view.subject = subject;
+    showLegend(scale, subject, this.view.losses !== undefined);
     showFaceLegend(scale);
     this.setTheme();
+  }
+
+  /** Called when something else is shown, or something else is known of it. */
+  readonly shownListeners: (() => void)[] = [];
+
+  /** What else is known of the robot that is built, beside its verdict. */
+  set note(text: string) {
+    this.noted = text;
+    this.showTrial();
+  }
+
+  /** Colours of what follows from losses, in place of those of loads. */
+  showLosses(fatal: Losses | undefined): void {
+    this.view.losses = fatal;
+    showLegend(this.view.scale, this.view.subject, fatal !== undefined);
+    this.view.paint();
   }
 
   /** Gives up the loads that are being worked out. */
@@ -154,8 +199,14 @@ export class App {
     this.stage.fit(low, high, keepsSide);
   }
 
-  /** What is under the pointer; `side` is a connection's. */
-  point(cell: Cell | undefined, side?: number): void {
+  /** What is under the pointer, at a point of the window; `side` is a connection's. Nothing while something is pinned. */
+  point(cell: Cell | undefined, side?: number, x?: number, y?: number): void {
+    if (this.isPinned) {
+      return;
+    }
+    if (x !== undefined && y !== undefined) {
+      this.tip.move(x, y);
+    }
     const { pointedCell } = this;
     const isSame = (cell && pointedCell ? equal(cell, pointedCell) : cell === pointedCell) && side === this.pointedSide;
     if (!isSame) {
@@ -165,13 +216,71 @@ export class App {
     }
   }
 
+  /** Keeps the numbers of a module, or of its connection at a side, in the picture. */
+  pin(cell: Cell, side?: number): void {
+    this.unpin();
+    this.point(cell, side);
+    const { lattice } = this.robot;
+    const place = new Vector3().fromArray(lattice.place(cell));
+    this.tip.pin(side === undefined ? place : place.addScaledVector(new Vector3().fromArray(lattice.units[side]), 0.5));
+    this.isPinned = true;
+  }
+
+  /** False if nothing was pinned. */
+  unpin(): boolean {
+    const { isPinned } = this;
+    this.isPinned = false;
+    if (isPinned) {
+      this.tip.pin(undefined);
+      this.point(undefined);
+    }
+    return isPinned;
+  }
+
+  /** Pins the worst connection, and goes where it is seen. */
+  seeWorst(): void {
+    const { worst } = this.view;
+    if (worst !== undefined) {
+      this.seeConnection(worst);
+    }
+  }
+
+  /** Pins a connection of the robot in the picture, and goes where it is seen. */
+  seeConnection(index: number): void {
+    const { robot, shown } = this;
+    const { connections } = shown!.answer!;
+    this.straighten();
+    this.stopTopple();
+    this.pin(robot.cellAt(shown!.slots[connections[3 * index]]), connections[3 * index + 2]);
+    this.stage.flyTo(this.view.connectionPoint(index));
+    say(`${connectionText(robot, shown!, index)}: ${byId('details').innerText}`);
+  }
+
   moveCursor(cell: Cell | undefined): void {
+    this.unpin();
     this.bench.cursor = cell;
     this.view.showCursor(cell);
     this.point(cell);
-    if (cell) {
-      this.stopTopple();
-      say(showDetails(this.robot, this.shown, cell, undefined) + this.whereNext.trialText(cell));
+    if (!cell) {
+      return this.whereNext.preview([]);
+    }
+    this.stopTopple();
+    const isGhost = this.bench.tool === 'add' && !this.exhibit && mayBe(this.bench, cell);
+    this.whereNext.preview(isGhost ? [cell] : []);
+    const at = this.stage.project(new Vector3().fromArray(this.robot.lattice.place(cell)));
+    const box = this.stage.canvas.getBoundingClientRect();
+    this.tip.move((at?.x ?? 0) + box.left, (at?.y ?? 0) + box.top);
+    this.sayCursor();
+  }
+
+  /** For who listens: what is at the cursor, or would come of a module there. */
+  private sayCursor(): void {
+    const { trial } = this.whereNext;
+    const { cursor } = this.bench;
+    if (cursor) {
+      const text = showDetails(this.robot, this.shown, cursor, undefined);
+      this.showPointed();
+      say(trial ? `${text}; ${trialText(trial, this.finding?.answer)}` : text);
     }
   }
 
@@ -216,10 +325,12 @@ export class App {
   private changed(what: Change): void {
     const { robot, history } = this.bench;
     this.toppling.stop();
+    this.view.exaggeration = this.exhibit ? 0 : this.view.exaggeration;
     this.exhibit = undefined;
     this.offer();
     // Colours of the robot as it was are not this one's, however soon its answer comes.
     this.view.paintOver = undefined;
+    this.unpin();
     this.view.point([]);
     this.pointedCell = undefined;
     this.whereNext.reset();
@@ -267,7 +378,7 @@ export class App {
   }
 
   /** Of the robot in the picture. */
-  private get shown(): Finding | undefined {
+  get shown(): Finding | undefined {
     return this.exhibit ? this.exhibit.finding : this.finding;
   }
 
@@ -280,6 +391,8 @@ export class App {
     const judged = finding?.answer && { answer: finding.answer, slots: finding.slots };
     this.view.show(robot, judged);
     showFinding(robot, finding);
+    this.showTrial();
+    this.shownListeners.forEach((tell) => tell());
     const bounds = robot.bounds() ?? { low: [0, 0, 0], high: [0, 0, 0] };
     const middle: [number, number] = [
       (bounds.low[0] + bounds.high[0]) / 2,
@@ -305,6 +418,26 @@ export class App {
     const other = isSeam ? robot.slot(robot.lattice.neighbour(pointedCell!, pointedSide)) : undefined;
     view.point([slot, other].filter((one) => one !== undefined));
     showDetails(robot, this.shown, pointedCell, pointedSide);
+    const { trial } = this.whereNext;
+    const details = byId('details');
+    if (trial) {
+      const would = make('p', { className: 'would' }, trialText(trial, this.finding?.answer));
+      would.dataset.verdict = trial.verdict ?? '';
+      details.prepend(would);
+    }
+    // Who builds looks at the robot, and at the connection that is near.
+    details.classList.toggle('brief', this.bench.tool !== 'look' && !this.isPinned);
+    this.tip.show(details.childElementCount > 0);
+  }
+
+  /** What the ghost would come to. */
+  private showTrial(): void {
+    const { trial } = this.whereNext;
+    showChip(this.robot, this.shown, this.exhibit ? undefined : trial, this.exhibit ? '' : this.noted);
+    this.showPointed();
+    if (trial && this.bench.cursor) {
+      this.sayCursor();
+    }
   }
 
   /** Draws the largest displacement as DRAWN_CELLS_MAX. */

@@ -7,8 +7,9 @@ import { CUBIC, latticeOf } from '../model/lattice';
 import { linkFragment, readFragment } from '../model/link';
 import { withoutHead, type Surroundings } from '../model/surroundings';
 import type { Workbench } from '../model/workbench';
-import type { Stage } from '../view/stage';
+import type { App } from './app';
 import { byId, download, tell } from './dom';
+import { makePoster } from './poster';
 
 /** Structures in and out: files, links, pictures, reports. Nothing that fails touches the robot. */
 
@@ -118,7 +119,8 @@ export function write(bench: Workbench, output: Output): Promise<string> {
 
 const fileName = (bench: Workbench) => bench.robot.name.replace(/[^\w.-]+/g, '_') || 'structure';
 
-export async function take(bench: Workbench, stage: Stage, what: string): Promise<void> {
+export async function take(app: App, what: string): Promise<void> {
+  const { bench } = app;
   const save = async (output: Output, ending: string, type: string) =>
     download(`${fileName(bench)}.${ending}`, new Blob([await write(bench, output)], { type }));
   try {
@@ -130,7 +132,7 @@ export async function take(bench: Workbench, stage: Stage, what: string): Promis
       case 'svg':
         return await save(Output.kSvg, 'svg', 'image/svg+xml');
       case 'png':
-        return await savePng(bench, stage);
+        return await savePng(app);
       case 'link':
         return await copyLink(bench);
       default:
@@ -141,14 +143,16 @@ export async function take(bench: Workbench, stage: Stage, what: string): Promis
   }
 }
 
-async function savePng(bench: Workbench, stage: Stage): Promise<void> {
-  stage.render();
-  const blob = await new Promise<Blob | null>((done) => stage.canvas.toBlob(done));
+async function savePng(app: App): Promise<void> {
+  const blob = await makePoster(app);
   if (!blob) {
     throw new Error('the browser gives no picture');
   }
-  download(`${fileName(bench)}.png`, blob);
+  download(`${fileName(app.bench)}.png`, blob);
 }
+
+/** A page on a disk has no address that others know. */
+const here = () => (location.protocol === 'file:' ? ' It opens on this computer only, as this page is a file here.' : '');
 
 async function copyLink(bench: Workbench): Promise<void> {
   const fragment = await linkFragment(await write(bench, Output.kJson));
@@ -159,9 +163,9 @@ async function copyLink(bench: Workbench): Promise<void> {
   history.replaceState(null, '', fragment);
   try {
     await navigator.clipboard.writeText(location.href);
-    tell('The link is copied; it holds the whole structure.');
+    tell(`The link is copied; it holds the whole structure.${here()}`);
   } catch {
-    tell('The link is in the address bar; it holds the whole structure.');
+    tell(`The link is in the address bar; it holds the whole structure.${here()}`);
   }
 }
 

@@ -17,11 +17,11 @@ export const KEYS: readonly [keys: string, text: string][] = [
   ['F', 'where may the next module go?'],
   ['[  ]', 'less, more exaggeration'],
   ['Q  E  +  −', 'turn left, turn right, nearer, further'],
-  ['H', 'see all'],
+  ['H  W', 'see all, see the worst connection'],
   ['T', 'let it topple, if it does; stand it up'],
   ['K  ,  .', 'the robot’s own computation: play or pause, step back, step on'],
   ['S  U  R', 'steps: play or pause, to the first unsafe stage, record'],
-  ['Esc', 'put the cursor away'],
+  ['Esc', 'put the cursor away, let pinned numbers go'],
   ['?', 'this page'],
 ];
 
@@ -47,6 +47,10 @@ export function listenToKeys(app: App, actions: Record<string, () => void>): voi
     if ((event.ctrlKey || event.metaKey) && !target.matches(TEXTS) && /^[zy]$/i.test(event.key)) {
       const isRedo = event.key.toLowerCase() === 'y' || event.shiftKey;
       actions[isRedo ? 'redo' : 'undo']();
+      event.preventDefault();
+      return;
+    }
+    if (event.key === 'Escape' && app.unpin()) {
       event.preventDefault();
       return;
     }

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 import type { Cell } from '../model/cell';
-import type { EditedRobot } from '../model/edited_robot';
-import { ROW_MAX } from '../model/workbench';
+import { ROW_MAX, mayBe } from '../model/workbench';
 import { alongAxis, nearSeam, pick, type Hit } from '../view/pick';
 import type { App } from './app';
 
@@ -91,14 +90,16 @@ export function listenToPointer(app: App): void {
     gesture = undefined;
     stage.controls.enabled = true;
     clearTimeout(ended?.timer);
-    if (ended?.isClick && isBent(app)) {
+    if (ended?.isClick && app.bench.tool === 'look' && event.pointerType !== 'touch') {
+      pinAt(app, ended.hit);
+    } else if (ended?.isClick && isBent(app)) {
       app.straighten();
     } else if (ended?.draws || ended?.isClick) {
       app.bench.use(ended.draws ? ended.cells : cellsOf(app, ended.hit));
       app.whereNext.preview([]);
     }
     if (event.pointerType === 'touch' && ended?.isClick) {
-      app.point(ended.hit?.what === 'ground' ? undefined : ended.hit?.cell, ended.hit && nearSeam(app.robot, ended.hit));
+      app.point(ended.hit?.what === 'ground' ? undefined : ended.hit?.cell, ended.hit && nearSeam(app.robot, ended.hit), event.clientX, event.clientY);
     }
   });
 
@@ -119,11 +120,18 @@ export function listenToPointer(app: App): void {
   canvas.addEventListener('contextmenu', (event) => event.preventDefault());
 }
 
+/** A click keeps the numbers of a module or a connection; another one lets them go. */
+function pinAt(app: App, hit: Hit | undefined): void {
+  if (!app.unpin() && hit?.what === 'module' && !app.isToppled) {
+    app.pin(hit.cell, nearSeam(app.robot, hit));
+  }
+}
+
 /** The shape under load is to look at; what is built is straight. */
-const isBent = (app: App) => app.view.exaggeration > 0;
+const isBent = (app: App) => app.view.exaggeration > 0 && !app.isExhibiting;
 
 function hover(app: App, x: number, y: number): void {
-  if (app.isToppled) {
+  if (app.isElsewhere) {
     app.point(undefined);
     app.whereNext.preview([]);
     return; // Nothing is where it is built.
@@ -131,7 +139,7 @@ function hover(app: App, x: number, y: number): void {
   const hit = pick(app.robot, app.stage.ray(x, y));
   const isModule = hit?.what === 'module';
   const isThere = hit !== undefined && hit.what !== 'ground';
-  app.point(isThere ? hit.cell : undefined, isModule ? nearSeam(app.robot, hit) : undefined);
+  app.point(isThere ? hit.cell : undefined, isModule ? nearSeam(app.robot, hit) : undefined, x, y);
   app.stage.canvas.style.cursor = isThere && app.bench.tool !== 'look' && !app.isExhibiting ? 'pointer' : 'grab';
   preview(app, isBent(app) || app.isExhibiting ? [] : cellsOf(app, hit));
 }
@@ -156,15 +164,8 @@ function cellsOf(app: App, hit: Hit | undefined): Cell[] {
     return isMeant ? [hit.cell] : [];
   }
   const cell = hit.what === 'ground' ? hit.cell : robot.lattice.neighbour(hit.cell, hit.face);
-  return mayBe(app, cell) ? [cell] : [];
+  return mayBe(app.bench, cell) ? [cell] : [];
 }
-
-const touches = (robot: EditedRobot, cell: Cell) =>
-  robot.count === 0 || robot.lattice.neighbours(cell).some((other) => robot.has(other));
-
-/** Modules touch the robot; obstacles may stand anywhere. */
-const mayBe = ({ bench: { robot, tool } }: App, cell: Cell) =>
-  robot.isFree(cell) && (tool === 'obstacle' || touches(robot, cell));
 
 /** A row of new modules, or more modules for a stroke. */
 function draw(app: App, gesture: Gesture, x: number, y: number): void {
@@ -178,7 +179,7 @@ function draw(app: App, gesture: Gesture, x: number, y: number): void {
     const row: Cell[] = [];
     // From a module on: the first one touches the robot, and each the one before it.
     for (let at = lattice.neighbour(cell, face); row.length < count; at = lattice.neighbour(at, face)) {
-      if (!robot.isFree(at) || (row.length === 0 && !mayBe(app, at))) {
+      if (!robot.isFree(at) || (row.length === 0 && !mayBe(app.bench, at))) {
         break;
       }
       row.push(at);

@@ -29,6 +29,7 @@ export function findingOf(robot: EditedRobot, report: StageReport, loads: StageL
     weight_factor: null,
     contact_model: loads?.contact_model ?? '',
     solves: 0,
+    second_order: null,
     facet_half_mm: 0,
     has_loads: (loads?.loads.length ?? 0) > 0,
     seconds: 0,

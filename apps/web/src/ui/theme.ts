@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-import { UNKNOWN, brokenColour, hex, loadColour, mix, verdictColour, type Rgb } from '../view/colours';
+import { UNKNOWN, brokenColour, hex, loadColour, mix, stepColours, verdictColour, type Rgb } from '../view/colours';
 import type { Ground } from '../view/ground';
 import type { RobotView } from '../view/robot_view';
 
@@ -25,7 +25,7 @@ export function setTheme(view: RobotView, ground: Ground, drawn: readonly { setI
     UNKNOWN,
     mix(UNKNOWN, isDark ? [0, 0, 0] : [255, 255, 255], 0.6),
   ];
-  view.setTheme(ink, codes);
+  view.setTheme(ink, codes, stepColours(scale));
   drawn.forEach((one) => one.setInk(hex(ink)));
   ground.colours = {
     ink: isDark ? [0.62, 0.66, 0.7] : [0.36, 0.41, 0.46],

@@ -60,7 +60,7 @@ export class Timeline {
     byId('order').onclick = () => void this.findOrder();
     byId('judge-steps').onclick = () => void this.judge();
     byId('sequence-stop').onclick = () => this.client.cancel();
-    byId('save-steps').onclick = () => void take(app.bench, app.stage, 'json');
+    byId('save-steps').onclick = () => void take(app, 'json');
     byId<HTMLInputElement>('stage-slider').oninput = (event) => {
       this.pause();
       this.show(Number((event.target as HTMLInputElement).value));
@@ -113,8 +113,10 @@ export class Timeline {
   private buildOn(): void {
     this.pause();
     this.at = undefined;
-    this.app.bench.closed = '';
-    this.app.setExhibit(undefined);
+    if (this.app.mode === 'stage') {
+      this.app.bench.closed = '';
+      this.app.setExhibit(undefined);
+    }
     this.showPlace();
   }
 
@@ -299,7 +301,7 @@ export class Timeline {
   private exhibit(waypoint: number): void {
     const robot = this.robotAt(waypoint);
     const { bounds } = this;
-    this.app.setExhibit({ robot, finding: findingOf(robot, this.report!, this.loads), bounds });
+    this.app.setExhibit({ mode: 'stage', robot, finding: findingOf(robot, this.report!, this.loads), bounds });
   }
 
   /**

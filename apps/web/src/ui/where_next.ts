@@ -29,6 +29,8 @@ export class WhereNext {
   knowsLoads = false;
   /** Another robot than the one that is built is shown. */
   isOff = false;
+  /** Called when what is known of the module that would be attached has changed; undefined: nothing is. */
+  onTrial: (trial: Trial | undefined) => void = () => undefined;
   private isShown = false;
   private isTrying = false;
   /** That of the workbench before its last change. */
@@ -94,13 +96,6 @@ export class WhereNext {
     this.view.showFaces(this.isShown && !this.isOff ? code : undefined);
   }
 
-  /** For who listens: what would come of a module in a free cell, if it is known. */
-  trialText(cell: Cell): string {
-    const { robot, role } = this.bench;
-    const verdict = robot.has(cell) ? undefined : this.places.known(cell, role)?.verdict;
-    return verdict ? `, would be ${verdict}` : '';
-  }
-
   private toolChanged(): void {
     const isOtherRole = this.role !== this.bench.role;
     this.role = this.bench.role;
@@ -114,15 +109,23 @@ export class WhereNext {
     if (this.bench.tool === 'obstacle') {
       const colour = OBSTACLE[this.bench.hold];
       this.view.showGhosts(this.previewed, Role.kExisting, colour, FaceCode.kNone);
+      this.onTrial(undefined);
       return;
     }
-    const [place, ...others] = this.previewed;
     const { role } = this.bench;
-    const trial = place && others.length === 0 ? this.places.known(place, role) : undefined;
+    const { trial } = this;
     const verdict = trial?.verdict;
     const colour = trial && verdict ? this.colour(verdict, trial.ratio) : UNKNOWN;
     const code = trial && verdict !== 'safe' ? codeOf(trial) : FaceCode.kNone;
     this.view.showGhosts(this.previewed, role, colour, code);
+    this.onTrial(trial);
+  }
+
+  /** Of the one module that would be attached, as far as it is known. */
+  get trial(): Trial | undefined {
+    const [place, ...others] = this.previewed;
+    const isOne = place && others.length === 0 && this.bench.tool === 'add';
+    return isOne ? this.places.known(place, this.bench.role) : undefined;
   }
 
   private colour(verdict: Verdict, ratio: number): Rgb {

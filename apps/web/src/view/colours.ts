@@ -7,9 +7,14 @@ import type { Verdict } from '../core/types';
 export type Rgb = readonly [red: number, green: number, blue: number];
 export type ScaleName = 'paper' | 'cividis';
 
+/** What the colours are about. */
+export type Subject = 'connections' | 'modules';
+
 interface Scale {
   stops: readonly [share: number, colour: Rgb][];
   broken: Rgb;
+  /** Two steps further. */
+  worse: readonly [Rgb, Rgb];
 }
 
 const SCALES: Record<ScaleName, Scale> = {
@@ -20,6 +25,7 @@ const SCALES: Record<ScaleName, Scale> = {
       [1, [240, 138, 36]],
     ],
     broken: [214, 32, 43],
+    worse: [[150, 12, 84], [72, 6, 66]],
   },
   // Cividis [Nunez 2018]: the same order of lightness whatever the eye; broken is near black.
   cividis: {
@@ -31,9 +37,12 @@ const SCALES: Record<ScaleName, Scale> = {
       [1, [255, 234, 70]],
     ],
     broken: [36, 20, 28],
+    worse: [[128, 8, 84], [205, 24, 120]],
   },
 };
 
+/** Of modules whose connections show the loads. */
+export const NEUTRAL: Rgb = [214, 216, 215];
 export const FIXED: Rgb = [58, 123, 200];
 export const UNSTABLE: Rgb = [142, 77, 178];
 export const UNKNOWN: Rgb = [165, 170, 176];
@@ -56,6 +65,25 @@ export function loadColour(scale: ScaleName, ratio: number): Rgb {
   const [low, from] = stops[next - 1];
   const [high, to] = stops[next];
   return mix(from, to, (share - low) / (high - low));
+}
+
+/** The steps of a connection's load: up to which ratio each goes. Those beyond 1 break. */
+export const LOAD_STEPS = [0.25, 0.5, 0.75, 1, 2, 5, Infinity] as const;
+const STEPS_BELOW = 4;
+
+/** The step of a load, from 1; what breaks is beyond 1, and nothing else. 0: it is not known. */
+export function loadStep(ratio: number, isBroken: boolean): number {
+  if (Number.isNaN(ratio)) {
+    return 0;
+  }
+  const step = 1 + LOAD_STEPS.findIndex((most) => ratio <= most);
+  return isBroken ? Math.max(step, STEPS_BELOW + 1) : Math.min(step, STEPS_BELOW);
+}
+
+/** By step, from the first on. */
+export function stepColours(scale: ScaleName): Rgb[] {
+  const below = Array.from({ length: STEPS_BELOW }, (_, i) => loadColour(scale, (i + 0.5) / STEPS_BELOW));
+  return [...below, SCALES[scale].broken, ...SCALES[scale].worse];
 }
 
 export const brokenColour = (scale: ScaleName) => SCALES[scale].broken;

@@ -24,7 +24,7 @@ export const enum Pattern {
 const DEFINES: Record<Shape, Record<string, string>> = {
   cube: {},
   prism: { HEXAGON: '' },
-  disc: {},
+  disc: { DISC: '' },
   sphere: { SPHERE: '' },
 };
 
@@ -49,9 +49,11 @@ attribute float pattern;
 attribute vec3 motion;
 attribute vec3 turn;
 attribute vec2 faces;
+attribute vec2 seams;
 uniform float exaggeration;
 varying vec3 vTint;
 flat varying float vPattern;
+flat varying vec2 vSeams;
 #ifdef SPHERE
 varying vec3 vCentre;
 varying vec3 vAt;
@@ -62,11 +64,14 @@ attribute float side;
 attribute vec4 face;
 varying vec4 vFace;
 varying vec3 vNormal;
+varying vec3 vBody;
 flat varying float vCode;
+flat varying float vSide;
 #endif
 ${COMMON}
 
 void main() {
+  vSeams = seams;
   vec3 w = turn * exaggeration;
   vTint = tint;
   vPattern = pattern;
@@ -84,6 +89,8 @@ void main() {
 #else
   vec3 at = place + rotated(position, w) + motion * exaggeration;
   vFace = face;
+  vBody = position;
+  vSide = side;
   vNormal = mat3(modelMatrix) * rotated(normal, w);
   vCode = codeOf(faces, side);
   gl_Position = projectionMatrix * modelViewMatrix * vec4(at, 1.0);
@@ -92,14 +99,16 @@ void main() {
 
 const FRAGMENT = `
 uniform vec3 codes[6];
+uniform vec3 steps[7];
 uniform vec3 pointed;
 uniform float opacity;
+uniform vec3 units[12];
 varying vec3 vTint;
 flat varying float vPattern;
+flat varying vec2 vSeams;
 #ifdef SPHERE
 uniform mat4 modelMatrix;
 uniform mat4 projectionMatrix;
-uniform vec3 units[12];
 varying vec3 vCentre;
 varying vec3 vAt;
 flat varying vec3 vTurn;
@@ -107,7 +116,9 @@ flat varying vec2 vFaces;
 #else
 varying vec4 vFace;
 varying vec3 vNormal;
+varying vec3 vBody;
 flat varying float vCode;
+flat varying float vSide;
 #endif
 ${COMMON}
 
@@ -129,7 +140,8 @@ float markOf(float code, vec2 at, float pixel) {
 bool has(float bit) { return mod(floor((vPattern + 0.5) / bit), 2.0) > 0.5; }
 
 // A point of a face: where it is from the middle, its distance from the border and along it, how far the
-// border is from the middle, and how much of all that is one pixel.
+// border is from the middle, and how much of all that is one pixel; the code of the nearest connection, and
+// how far it is from where modules touch.
 struct Spot {
   vec3 n;
   vec2 at;
@@ -138,7 +150,16 @@ struct Spot {
   float reach;
   float pixel;
   float code;
+  float seam;
+  float gap;
 };
+
+// Half the width of a connection's band: around where round modules touch, along the edges of others.
+#if defined(SPHERE) || defined(DISC)
+const float BAND = 0.17;
+#else
+const float BAND = 0.075;
+#endif
 
 #ifdef SPHERE
 
@@ -170,10 +191,41 @@ Spot spotOn(vec3 n, vec3 body, float pixel) {
   spot.reach = 0.25;
   spot.pixel = pixel;
   spot.code = codeOf(vFaces, float(side));
+  spot.seam = codeOf(vSeams, float(side));
+  spot.gap = 0.5 * distance(body, middle);
   return spot;
 }
 
 #else
+
+// The direction that a point of the surface is nearest to, beside that of its own face.
+Spot withSeam(Spot spot) {
+#ifdef DISC
+  vec3 body = normalize(vec3(vBody.x, 0.0, vBody.z));
+#else
+  vec3 body = vBody;
+#endif
+  float best = 0.0;
+  int side = -1;
+  for (int i = 0; i < 12; ++i) {
+    float share = dot(units[i], body);
+#ifndef DISC
+    if (abs(float(i) - vSide) < 0.5) continue;
+#endif
+    if (share > best) {
+      best = share;
+      side = i;
+    }
+  }
+  if (side < 0) return spot;
+  spot.seam = codeOf(vSeams, float(side));
+#ifdef DISC
+  spot.gap = distance(vec2(vBody.x, vBody.z), 0.5 * vec2(units[side].x, units[side].z));
+#else
+  spot.gap = 0.5 - best;
+#endif
+  return spot;
+}
 
 Spot spotOfFace() {
   vec2 at = vFace.xy;
@@ -198,6 +250,9 @@ Spot spotOfFace() {
     spot.along = 0.5 * atan(at.y, at.x);
 #endif
   }
+  spot.seam = 0.0;
+  spot.gap = 1.0;
+  if (vSeams.x + vSeams.y > 0.5) return withSeam(spot);
   return spot;
 }
 
@@ -237,6 +292,17 @@ vec3 colourOf(Spot spot) {
     colour = mix(colour, code, inset);
     float isDark = step(dot(code, vec3(0.2126, 0.7152, 0.0722)), 0.45);
     colour = mix(colour, vec3(isDark), markOf(spot.code, at, fine));
+  }
+  if (spot.seam > 0.5) {
+    bool breaks = spot.seam > 4.5;
+    float reach = clamp(2.0 * pixel, BAND * (breaks ? 1.5 : 1.0), 0.3);
+    float inside = 1.0 - smoothstep(reach - pixel, reach, spot.gap);
+    vec3 band = steps[int(spot.seam + 0.5) - 1];
+    // A crack: teeth across the band, where there is room for them.
+    float tooth = abs(fract(spot.along * 5.0) - 0.5);
+    float crack = stroke(spot.gap - 1.3 * reach * tooth, 0.012, pixel) * clamp(0.02 / pixel, 0.0, 1.0);
+    band = breaks ? mix(band, vec3(1.0), 0.9 * crack) : band;
+    colour = mix(colour, band * mix(light, 1.0, 0.5), inside);
   }
   float visible = clamp(1.5 * width / pixel, 0.25, 1.0);
   float edge = 1.0 - smoothstep(width, width + pixel, spot.border);
@@ -282,12 +348,15 @@ export class ModuleMesh {
   motions = new Float32Array(0);
   turns = new Float32Array(0);
   faces = new Float32Array(0);
+  /** The step of the connection at each direction, packed as faces are. */
+  seams = new Float32Array(0);
 
   private lattice = CUBIC;
   private readonly uniforms = {
     exaggeration: { value: 0 },
     opacity: { value: 1 },
     codes: { value: new Float32Array(18) },
+    steps: { value: new Float32Array(21) },
     pointed: { value: [0, 0, 0] },
     units: { value: new Float32Array(36) },
   };
@@ -296,6 +365,7 @@ export class ModuleMesh {
 
   constructor(opacity = 1) {
     this.uniforms.opacity.value = opacity;
+    this.uniforms.units.value.set(CUBIC.units.flat());
     this.mesh = new Mesh(new InstancedBufferGeometry(), this.material());
     this.mesh.frustumCulled = false;
     this.reserve(64);
@@ -309,17 +379,18 @@ export class ModuleMesh {
     return this.uniforms.exaggeration.value;
   }
 
-  /** Colours from 0 to 1: the rim of what is pointed at, and by FaceCode but the first. */
-  setColours(pointed: number[], codes: number[]): void {
+  /** Colours from 0 to 1: the rim of what is pointed at, by FaceCode but the first, by step of load. */
+  setColours(pointed: number[], codes: number[], steps: number[]): void {
     this.uniforms.pointed.value = pointed;
     this.uniforms.codes.value.set(codes);
+    this.uniforms.steps.value.set(steps);
   }
 
   /** Modules of another lattice; what is in the arrays is lost. */
   setLattice(lattice: Lattice): void {
     if (lattice !== this.lattice) {
       this.lattice = lattice;
-      this.uniforms.units.value.set(lattice.units.slice(0, 12).flat());
+      this.uniforms.units.value.fill(0).set(lattice.units.slice(0, 12).flat());
       this.mesh.material = this.material();
       this.capacity = 0;
       this.reserve(64);
@@ -356,6 +427,7 @@ export class ModuleMesh {
     this.motions = new Float32Array(3 * this.capacity);
     this.turns = new Float32Array(3 * this.capacity);
     this.faces = new Float32Array(2 * this.capacity);
+    this.seams = new Float32Array(2 * this.capacity);
     const geometry = new InstancedBufferGeometry();
     const shape = shapeGeometry(this.lattice);
     geometry.index = shape.index;
@@ -372,6 +444,7 @@ export class ModuleMesh {
     add('motion', this.motions, 3);
     add('turn', this.turns, 3);
     add('faces', this.faces, 2);
+    add('seams', this.seams, 2);
     this.mesh.geometry.dispose();
     this.mesh.geometry = geometry;
   }

@@ -8,7 +8,9 @@ import { LOAD_FIELDS, MOTION_FIELDS, type Answer } from '../core/types';
 import { Role, type Cell } from '../model/cell';
 import type { EditedRobot } from '../model/edited_robot';
 import { CUBIC, type Lattice } from '../model/lattice';
-import { FIXED, UNKNOWN, UNSTABLE, brokenColour, loadColour, mix, type Rgb, type ScaleName } from './colours';
+import {
+  FIXED, NEUTRAL, UNKNOWN, UNSTABLE, brokenColour, loadColour, loadStep, mix, type Rgb, type ScaleName, type Subject,
+} from './colours';
 import { ModuleMesh, Pattern } from './modules';
 import { cellEdges } from './polyhedron';
 import type { Stage } from './stage';
@@ -43,6 +45,12 @@ function packed(lattice: Lattice, codeOf: (direction: number) => FaceCode): [num
     numbers[Math.floor(side / FACES_PER_NUMBER)] += codeOf(side) * FACE_BASE ** (side % FACES_PER_NUMBER);
   }
   return numbers;
+}
+
+/** What the robot cannot do without: connections by index, modules by slot. */
+export interface Losses {
+  connections: ReadonlySet<number>;
+  modules: ReadonlySet<number>;
 }
 
 /** The load of each module: the largest ratio of its connections, and whether one breaks. */
@@ -89,11 +97,17 @@ export class RobotView {
   private hasFaces = false;
   private mechanism?: Float64Array;
   scale: ScaleName = 'paper';
+  /** Where the loads are shown. */
+  subject: Subject = 'connections';
   /** Colours of modules that have their own, by slot; the trace player's. Until another robot is shown. */
   paintOver?: (slot: number) => Rgb | undefined;
   /** Slots of modules that give way while a collapse is shown, in place of all other colours. */
   private yielding?: ReadonlySet<number>;
   private pointed: readonly number[] = [];
+  /** In place of loads. */
+  losses?: Losses;
+  /** Slots that stand out; undefined: all are alike. */
+  private lit?: ReadonlySet<number>;
 
   constructor(private readonly stage: Stage) {
     this.cursor.renderOrder = 5;
@@ -141,23 +155,62 @@ export class RobotView {
       const role = robot.roleAt(slot);
       const isBroken = !isUnstable && loads?.isBroken[slot] === 1;
       const own = this.ownColour(slot);
-      const colour = own ?? this.colour(role, loads?.ratio[slot], isBroken, isUnstable);
+      const colour = own ?? this.lossColour(slot) ?? this.colour(role, loads?.ratio[slot], isBroken, isUnstable);
       const isPlanned = role === Role.kPlanned;
-      this.modules.tints.set(isPlanned && !own ? mix(colour, WHITE, 0.38) : colour, 3 * i);
+      const tint = isPlanned && !own ? mix(colour, WHITE, 0.38) : colour;
+      this.modules.tints.set(this.lit && !this.lit.has(slot) ? mix(tint, UNKNOWN, 0.75) : tint, 3 * i);
       this.modules.patterns[i] =
         (isPlanned ? Pattern.kPlanned : 0) +
         (role === Role.kFixed ? Pattern.kFixed : 0) +
-        (isBroken && !own ? Pattern.kBroken : 0);
+        (isBroken && !own && this.subject === 'modules' && !this.losses ? Pattern.kBroken : 0);
     });
+    this.paintSeams();
     this.pointed.forEach((slot) => this.mark(slot, Pattern.kPointed));
-    this.modules.update(this.drawn.length, 'tint', 'pattern');
+    this.modules.update(this.drawn.length, 'tint', 'pattern', 'seams');
     this.collar.visible = this.worst !== undefined && !this.hasOwnColours;
     this.stage.draw();
+  }
+
+  /** The step of every connection's load, on both of its modules. */
+  private paintSeams(): void {
+    const { seams } = this.modules;
+    seams.fill(0, 0, 2 * this.drawn.length);
+    const answer = this.judged?.answer;
+    if ((this.subject !== 'connections' && !this.losses) || this.hasOwnColours || !answer?.has_loads || answer.verdict === 'unstable') {
+      return;
+    }
+    const isBroken = new Uint8Array(answer.connections.length / 3);
+    answer.broken.forEach((i) => (isBroken[i] = 1));
+    const add = (module: number, direction: number, step: number) => {
+      const at = this.instances[this.judged!.slots[module]];
+      if (at >= 0) {
+        seams[2 * at + Math.floor(direction / FACES_PER_NUMBER)] += step * FACE_BASE ** (direction % FACES_PER_NUMBER);
+      }
+    };
+    for (let i = 0; 3 * i < answer.connections.length; ++i) {
+      const [a, b, direction] = answer.connections.subarray(3 * i, 3 * i + 3);
+      const isFatal = this.losses?.connections.has(i);
+      const step = isFatal === undefined ? loadStep(answer.loads[LOAD_FIELDS * i], isBroken[i] === 1) : loadStep(isFatal ? 1 : 0, isFatal);
+      add(a, direction, step);
+      add(b, direction ^ 1, step);
+    }
   }
 
   /** Colours tell something else than loads now. */
   get hasOwnColours(): boolean {
     return this.paintOver !== undefined || this.yielding !== undefined;
+  }
+
+  private lossColour(slot: number): Rgb | undefined {
+    return this.losses && (this.losses.modules.has(slot) ? brokenColour(this.scale) : NEUTRAL);
+  }
+
+  /** Lets modules stand out, by slot. */
+  light(slots: ReadonlySet<number> | undefined): void {
+    if (slots !== this.lit) {
+      this.lit = slots;
+      this.paint();
+    }
   }
 
   private ownColour(slot: number): Rgb | undefined {
@@ -235,10 +288,10 @@ export class RobotView {
     return this.modules.exaggeration;
   }
 
-  setTheme(ink: Rgb, codes: Rgb[]): void {
+  setTheme(ink: Rgb, codes: Rgb[], steps: Rgb[]): void {
     const unit = (colour: Rgb) => colour.map((value) => value / 255);
     for (const mesh of [this.modules, this.ghosts]) {
-      mesh.setColours(unit(ink), codes.flatMap(unit));
+      mesh.setColours(unit(ink), codes.flatMap(unit), steps.flatMap(unit));
     }
     const [red, green, blue] = unit(ink);
     this.cursor.material.color.setRGB(red, green, blue, 'srgb');
@@ -256,7 +309,7 @@ export class RobotView {
   /** The connection whose collar is shown; undefined if none is. */
   get worst(): number | undefined {
     const answer = this.judged?.answer;
-    return answer && answer.verdict !== 'unstable' ? (answer.worst ?? undefined) : undefined;
+    return answer && answer.verdict !== 'unstable' && !this.losses ? (answer.worst ?? undefined) : undefined;
   }
 
   private setLattice(lattice: Lattice): void {
@@ -289,6 +342,9 @@ export class RobotView {
     }
     if (ratio === undefined || Number.isNaN(ratio)) {
       return UNKNOWN;
+    }
+    if (this.subject === 'connections') {
+      return NEUTRAL;
     }
     return isBroken ? brokenColour(this.scale) : loadColour(this.scale, ratio);
   }
@@ -355,9 +411,9 @@ function collarGeometry({ shape }: Lattice): BufferGeometry {
     return new TorusGeometry(shape === 'prism' ? 0.62 : 0.3, 0.05, 8, 32);
   }
   const bars = [-1, 1].flatMap((side) => {
-    const along = new BoxGeometry(1.16, 0.07, 0.12);
-    const across = new BoxGeometry(0.07, 1.16, 0.12);
-    return [along.translate(0, 0.545 * side, 0), across.translate(0.545 * side, 0, 0)];
+    const along = new BoxGeometry(1.12, 0.05, 0.05);
+    const across = new BoxGeometry(0.05, 1.12, 0.05);
+    return [along.translate(0, 0.535 * side, 0), across.translate(0.535 * side, 0, 0)];
   });
   return mergeGeometries(bars);
 }

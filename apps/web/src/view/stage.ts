@@ -16,6 +16,10 @@ import {
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import type { Place } from '../model/lattice';
 
+/** From a connection that is looked at, in cells, and how long the way there takes. */
+const NEAR = 14;
+const FLIGHT_MS = 350;
+
 const UPRIGHT = new Vector3(0, 0, 1);
 
 /** Moves something to where it is at a time; true while it goes on moving. */
@@ -32,6 +36,8 @@ export class Stage {
   private readonly renderer: WebGLRenderer;
   private readonly raycaster = new Raycaster();
   private frame = 0;
+  /** The camera's way, while it goes. */
+  private flight?: Motion;
   /** Nothing is drawn before there is something to see. */
   isReady = false;
   /** What moves: called before each frame with its time. */
@@ -41,7 +47,7 @@ export class Stage {
 
   constructor(
     readonly canvas: HTMLCanvasElement,
-    private readonly coveredPixels: () => number,
+    private readonly covered: () => { top: number; bottom: number },
   ) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.renderer.setClearAlpha(0);
@@ -67,10 +73,13 @@ export class Stage {
 
   /** What a frame does: motions go on, all is drawn, and what follows the camera comes after. */
   drawFrame(now: number): void {
+    if (this.flight && !this.flight(now)) {
+      this.flight = undefined;
+    }
     const moving = this.motions.filter((motion) => motion(now));
     this.render();
     this.followers.forEach((follow) => follow());
-    if (moving.length > 0) {
+    if (moving.length > 0 || this.flight) {
       this.draw();
     }
   }
@@ -78,6 +87,22 @@ export class Stage {
   /** Draws now, without waiting for a frame. */
   render(): void {
     this.renderer.render(this.scene, this.camera);
+  }
+
+  /** The picture with so many pixels for each that it has now, until it is drawn again. */
+  picture(scale: number): { canvas: HTMLCanvasElement; ratio: number } {
+    const ratio = this.renderer.getPixelRatio();
+    const { clientWidth, clientHeight } = this.canvas;
+    const copy = document.createElement('canvas');
+    this.renderer.setPixelRatio(ratio * scale);
+    this.renderer.setSize(clientWidth, clientHeight, false);
+    this.render();
+    [copy.width, copy.height] = [this.canvas.width, this.canvas.height];
+    copy.getContext('2d')!.drawImage(this.canvas, 0, 0);
+    this.renderer.setPixelRatio(ratio);
+    this.renderer.setSize(clientWidth, clientHeight, false);
+    this.render();
+    return { canvas: copy, ratio: ratio * scale };
   }
 
   get drawCalls(): number {
@@ -143,6 +168,25 @@ export class Stage {
     this.draw();
   }
 
+  /** Goes near a point, from the side from which the robot is seen; at once for who wants no motion. */
+  flyTo(point: Vector3): void {
+    const { camera, controls } = this;
+    const from = { target: controls.target.clone(), position: camera.position.clone() };
+    const way = from.position.clone().sub(from.target);
+    const to = point.clone().add(way.clampLength(0, NEAR));
+    const begun = performance.now();
+    const ms = matchMedia('(prefers-reduced-motion: reduce)').matches ? 0 : FLIGHT_MS;
+    this.flight = (now) => {
+      const share = ms === 0 ? 1 : Math.min(Math.max((now - begun) / ms, 0), 1);
+      const soft = share * share * (3 - 2 * share);
+      controls.target.lerpVectors(from.target, point, soft);
+      camera.position.lerpVectors(from.position, to, soft);
+      controls.update();
+      return share < 1;
+    };
+    this.draw();
+  }
+
   /** All of a box of nodes is in the picture. */
   holds(low: Place, high: Place): boolean {
     const { clientWidth, clientHeight } = this.canvas;
@@ -168,11 +212,12 @@ export class Stage {
     const { clientWidth, clientHeight } = this.canvas;
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.setSize(Math.max(clientWidth, 1), Math.max(clientHeight, 1), false);
-    // The tools cover the lower part: the middle of the picture is the middle of the rest.
-    const covered = Math.min(this.coveredPixels(), clientHeight / 2);
-    const [width, height] = [Math.max(clientWidth, 1), Math.max(clientHeight - covered, 1)];
+    // The verdict and the tools cover the upper and the lower part: the middle of the picture is that of the rest.
+    const { top, bottom } = this.covered();
+    const share = Math.min(1, clientHeight / 2 / Math.max(top + bottom, 1));
+    const [width, height] = [Math.max(clientWidth, 1), Math.max(clientHeight - share * (top + bottom), 1)];
     this.camera.aspect = width / height;
-    this.camera.setViewOffset(width, height, 0, 0, width, height + covered);
+    this.camera.setViewOffset(width, height, 0, -share * top, width, clientHeight);
     this.camera.updateProjectionMatrix();
     this.draw();
   }

@@ -107,28 +107,6 @@ void write_loads(Out out, const model::Robot& robot, const verdict::Assessment& 
   }
 }
 
-std::string buckling_text(const verdict::SecondOrder& second) {
-  using solver::BucklingAnswer;
-  if (const auto factor = second.buckling_factor();
-      factor && second.answer == BucklingAnswer::kFactor) {
-    return fmt::format("buckling factor {} (linear estimate)", beside_one(*factor, 3));
-  }
-  switch (second.answer) {
-    case BucklingAnswer::kNone:
-      return "no buckling";
-    case BucklingAnswer::kAbove:
-      return fmt::format("buckling factor above {:g}", second.factor);
-    case BucklingAnswer::kAtMost:
-      return std::isfinite(second.factor)
-                 ? fmt::format("buckling factor at most {:.3g} (linear estimate)", second.factor)
-                 : "buckling factor not known";
-    case BucklingAnswer::kNoStiffness:
-    case BucklingAnswer::kFactor:
-      break;
-  }
-  return "no stiffness in the states of its feet";
-}
-
 void write_second_order(Out out, const verdict::Assessment& assessment) {
   if (const auto& second = assessment.second_order) {
     fmt::format_to(out, "  second order  {}: {}\n", buckling_text(*second),
@@ -174,6 +152,28 @@ void write_proof(Out out, const ReportEntry& entry) {
 }
 
 }  // namespace
+
+std::string buckling_text(const verdict::SecondOrder& second) {
+  using solver::BucklingAnswer;
+  if (const auto factor = second.buckling_factor();
+      factor && second.answer == BucklingAnswer::kFactor) {
+    return fmt::format("buckling factor {} (linear estimate)", beside_one(*factor, 3));
+  }
+  switch (second.answer) {
+    case BucklingAnswer::kNone:
+      return "no buckling";
+    case BucklingAnswer::kAbove:
+      return fmt::format("buckling factor above {:g}", second.factor);
+    case BucklingAnswer::kAtMost:
+      return std::isfinite(second.factor)
+                 ? fmt::format("buckling factor at most {:.3g} (linear estimate)", second.factor)
+                 : "buckling factor not known";
+    case BucklingAnswer::kNoStiffness:
+    case BucklingAnswer::kFactor:
+      break;
+  }
+  return "no stiffness in the states of its feet";
+}
 
 std::string write_report_text(const ReportEntry& entry) {
   const verdict::Assessment& assessment = *entry.assessment;

@@ -32,6 +32,9 @@ std::string reason_text(const model::Robot& robot, const verdict::Reason& reason
 /// Returns the sentence for a reason whose cells verdict::cells_of() has found.
 std::string reason_text(const verdict::Reason& reason, std::span<const base::Cell> cells);
 
+/// Says what is known of a robot's buckling: "buckling factor above 10".
+std::string buckling_text(const verdict::SecondOrder& second);
+
 /// The facts of the whole robot that a report needs if its entry's robot is only a part.
 struct WholeRobot {
   std::size_t existing_count = 0;
