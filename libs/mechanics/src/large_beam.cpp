@@ -441,16 +441,11 @@ EndForces LargeBeam::second_order_forces(const Vec6<double>& u_p, const Vec6<dou
   const Vector3 h1 = {k[3] * psi1[0], k[4] * psi1[1], k[5] * psi1[2]};
   const Vector3 h2 = {k[3] * psi2[0], k[4] * psi2[1], k[5] * psi2[2]};
 
-  // E = [a]x / 2 + ((psi . a) + psi a^T - 2 a psi^T) / 12, to first order.
-  Matrix3 E0{};
-  add_times(E0, 0.5, cross_matrix(a0));
-  Matrix3 E1 = diagonal(dot(psi1, a0) / 12);
-  add_times(E1, 0.5, cross_matrix(a1));
-  add_outer(E1, 1.0 / 12, psi1, a0);
-  add_outer(E1, -1.0 / 6, a0, psi1);
-  const Vector3 G1 = sum_of(h1, 1, product(transpose(E0), g1));
-  const Vector3 G2 =
-      sum_of(sum_of(h2, 1, product(transpose(E0), g2)), 1, product(transpose(E1), g1));
+  // E = [a]x / 2 + ((psi . a) + psi a^T - 2 a psi^T) / 12, to first order; E^T times a vector.
+  const Vector3 G1 = sum_of(h1, -0.5, cross(a0, g1));
+  const Vector3 by_a1 = sum_of(scaled(dot(psi1, a0) / 12, g1), -0.5, cross(a1, g1));
+  const Vector3 E1_g1 = sum_of(sum_of(by_a1, dot(psi1, g1) / 12, a0), -dot(a0, g1) / 6, psi1);
+  const Vector3 G2 = sum_of(sum_of(h2, -0.5, cross(a0, g2)), 1, E1_g1);
   const Vector3 turn = sum_of(scaled(0.5, psi1), 1, w_p);  // V^-T, then R_p
   const Vector3 force = sum_of(g2, 1, cross(turn, g1));
   const Vector3 moment = sum_of(G2, 1, cross(turn, G1));

@@ -205,13 +205,15 @@ void EquilibriumSolver::seek_others(Equilibrium& settled) {
 
 SecondOrder EquilibriumSolver::find_second_order(const Equilibrium& settled,
                                                  const SecondOrderOptions& options) {
-  const std::unique_ptr<DirectSystem> beside = choice_->make_direct_beside();
-  for (LinearSystem* const system : {choice_->system(), static_cast<LinearSystem*>(beside.get())}) {
-    if (system != nullptr) {
-      take_states(*system, settled.contact);
+  take_states(*choice_->system(), settled.contact);
+  const auto make_direct = [&]() -> std::unique_ptr<LinearSystem> {
+    auto beside = choice_->make_direct_beside();
+    if (beside) {
+      take_states(*beside, settled.contact);
     }
-  }
-  return second_order(*choice_->system(), beside.get(), settled.displacement, options);
+    return beside;
+  };
+  return second_order(*choice_->system(), make_direct, settled.displacement, options);
 }
 
 std::vector<Equilibrium> EquilibriumSolver::seek_settled(const ContactOptions& contact) {

@@ -259,7 +259,7 @@ std::optional<std::vector<std::vector<Vec6<double>>>> DirectSystem::solve_each(
   return columns;
 }
 
-std::optional<bool> DirectSystem::is_definite(const StressedBeams& beams, double factor) {
+std::optional<bool> DirectSystem::is_definite(StressedBeams& beams, double factor) {
   if (factor == 0) {
     return lu_->factor(thread_count_) && lu_->is_positive_definite();
   }
@@ -269,7 +269,7 @@ std::optional<bool> DirectSystem::is_definite(const StressedBeams& beams, double
 }
 
 /// Makes K + factor K_G of K.
-void DirectSystem::add_stress(const StressedBeams& beams, double factor, BlockLu& lu) const {
+void DirectSystem::add_stress(StressedBeams& beams, double factor, BlockLu& lu) const {
   std::vector<Mat6<double>> diagonal = diagonal_;
   const auto add = [&](std::int32_t node, const Mat6<double>& block) {
     if (node >= 0) {

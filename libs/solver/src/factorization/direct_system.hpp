@@ -32,7 +32,7 @@ class DirectSystem final : public LinearSystem {
   [[nodiscard]] std::optional<std::vector<std::vector<Vec>>> solve_each(
       std::span<const model::Loads> loads, double tolerance) override;
 
-  [[nodiscard]] std::optional<bool> is_definite(const StressedBeams& beams, double factor) override;
+  [[nodiscard]] std::optional<bool> is_definite(StressedBeams& beams, double factor) override;
 
   bool is_exact() const override { return true; }
 
@@ -63,7 +63,7 @@ class DirectSystem final : public LinearSystem {
   void assemble();
   std::vector<base::Mat6<double>> set_connections();
   std::size_t first_facet_after(std::size_t facet) const;
-  void add_stress(const StressedBeams& beams, double factor, BlockLu& lu) const;
+  void add_stress(StressedBeams& beams, double factor, BlockLu& lu) const;
   std::vector<Vec> by_module(const std::vector<Vec>& by_node) const;
   template <class Load>
   std::vector<Vec> by_node(const Load& load) const;

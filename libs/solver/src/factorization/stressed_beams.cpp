@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "holdfast/model/lattice_beam.hpp"
 
@@ -21,8 +22,8 @@ void add_times(Mat6<double>& sum, double factor, const Mat6<double>& term) {
 }
 
 /// The stresses of a facet when its module moves by u: what its law holds of the trial force.
-Vec6<double> facet_stress(const LinearSystem& system, const FacetState& facet,
-                          const Vec6<double>& u) {
+Vec6<double> stress_of_facet(const LinearSystem& system, const FacetState& facet,
+                             const Vec6<double>& u) {
   const auto corrector = mechanics::corrector(system.ground(), facet.state, facet.is_held);
   return base::multiply(corrector, system.law().trial_force(facet, u));
 }
@@ -60,21 +61,32 @@ StressedBeams::StressedBeams(const LinearSystem& system, const Vecs& displacemen
     : system_(system),
       displacement_(displacement),
       team_(thread_count, displacement.size()),
-      beams_(system.beam(), system.robot().lattice(), system.robot().material().pitch_mm),
-      bases_(base::Lattice::kDirectionCountMax + 1) {
-  for (const base::Direction direction : base::facet_directions(system.robot().lattice())) {
-    Bases& bases = bases_[static_cast<std::size_t>(base::index(direction))];
+      beams_(system.beam(), system.robot().lattice(), system.robot().material().pitch_mm) {}
+
+const StressedBeams::Bases& StressedBeams::bases(base::Direction direction) {
+  auto& known = bases_[static_cast<std::size_t>(base::index(direction))];
+  if (!known) {
+    auto bases = std::make_unique<Bases>();
     for (int k = 0; k < 6; ++k) {
-      bases[static_cast<std::size_t>(k)] =
-          beams_[direction].geometric_stiffness(base::unit<double>(k));
+      (*bases)[base::at(k)] = beams_[direction].geometric_stiffness(base::unit<double>(k));
     }
+    known = std::move(bases);
   }
+  return *known;
 }
 
-EndTangent StressedBeams::blocks(const model::Connection& connection) const {
-  const Vec s =
-      system_.beam().middle_force(connection.direction, displacement_[base::at(connection.a)],
-                                  displacement_[base::at(connection.b)]);
+Vec6<double> StressedBeams::stress(const model::Connection& connection) const {
+  return system_.beam().middle_force(connection.direction, displacement_[base::at(connection.a)],
+                                     displacement_[base::at(connection.b)]);
+}
+
+Vec6<double> StressedBeams::facet_stress(std::size_t facet) const {
+  const FacetState& state = system_.facets()[facet];
+  return stress_of_facet(system_, state, displacement_[state.module]);
+}
+
+EndTangent StressedBeams::blocks(const model::Connection& connection) {
+  const Vec s = stress(connection);
   const Bases& bases = this->bases(connection.direction);
   EndTangent sum;
   for (std::size_t k = 0; k < 6; ++k) {
@@ -86,10 +98,9 @@ EndTangent StressedBeams::blocks(const model::Connection& connection) const {
   return sum;
 }
 
-Mat6<double> StressedBeams::block(std::size_t facet) const {
-  const FacetState& state = system_.facets()[facet];
-  const Vec s = facet_stress(system_, state, displacement_[state.module]);
-  const Bases& bases = this->bases(state.direction);
+Mat6<double> StressedBeams::block(std::size_t facet) {
+  const Vec s = facet_stress(facet);
+  const Bases& bases = this->bases(system_.facets()[facet].direction);
   Mat6<double> sum;
   for (std::size_t k = 0; k < 6; ++k) {
     add_times(sum, s[k], bases[k].pp);
@@ -120,6 +131,9 @@ StressedBeams::Vecs StressedBeams::sum_over_neighbours(const OnPair& on_pair) {
 }
 
 StressedBeams::Vecs StressedBeams::softening(const Vecs& x) {
+  for (const base::Direction direction : base::directions(robot().lattice())) {
+    bases(direction);
+  }
   Vecs sums = sum_over_neighbours([&](std::size_t p, base::Direction direction, std::size_t q) {
     const Vec s = system_.beam().middle_force(direction, displacement_[p], displacement_[q]);
     const Bases& bases = this->bases(direction);
@@ -140,10 +154,32 @@ StressedBeams::Vecs StressedBeams::softening(const Vecs& x) {
   return sums;
 }
 
+/// In robots that no threads share, each connection is looked at once.
+StressedBeams::Vecs StressedBeams::second_order_forces_of_beams() {
+  if (displacement_.size() >= host::Team::kSharedItemMin) {
+    return sum_over_neighbours([&](std::size_t p, base::Direction direction, std::size_t q) {
+      return beams_[direction].second_order_forces(displacement_[p], displacement_[q]).p;
+    });
+  }
+  Vecs sums(displacement_.size(), Vec{});
+  for (const model::Connection connection : robot().connections()) {
+    const std::size_t p = base::at(connection.a);
+    const std::size_t q = base::at(connection.b);
+    const mechanics::EndForces forces =
+        beams_[connection.direction].second_order_forces(displacement_[p], displacement_[q]);
+    base::add_to(sums[p], forces.p);
+    base::add_to(sums[q], forces.q);
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    if (robot().modules()[i].support == model::Support::kFixed) {
+      sums[i] = Vec{};
+    }
+  }
+  return sums;
+}
+
 StressedBeams::Vecs StressedBeams::second_order_forces() {
-  Vecs sums = sum_over_neighbours([&](std::size_t p, base::Direction direction, std::size_t q) {
-    return beams_[direction].second_order_forces(displacement_[p], displacement_[q]).p;
-  });
+  Vecs sums = second_order_forces_of_beams();
   for (const FacetState& facet : system_.facets()) {
     const Vec& u = displacement_[facet.module];
     const bool is_stuck = facet.state == mechanics::kStuck && facet.is_held;

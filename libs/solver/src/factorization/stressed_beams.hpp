@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "holdfast/base/algebra.hpp"
@@ -22,11 +23,22 @@ class StressedBeams {
 
   StressedBeams(const LinearSystem& system, const Vecs& displacement, int thread_count);
 
+  const LinearSystem& system() const { return system_; }
+
+  /// The stiffness of a beam by stress, in the order of a force in the middle.
+  const base::Vec6<double>& stiffness() const {
+    return beams_[base::Direction::kMinusZ].stiffness();
+  }
+
+  /// The stresses of a connection, and of a facet in its state.
+  Vec stress(const model::Connection& connection) const;
+  Vec facet_stress(std::size_t facet) const;
+
   /// The blocks of a connection.
-  mechanics::EndTangent blocks(const model::Connection& connection) const;
+  mechanics::EndTangent blocks(const model::Connection& connection);
 
   /// The block of a facet, which stands on the diagonal.
-  base::Mat6<double> block(std::size_t facet) const;
+  base::Mat6<double> block(std::size_t facet);
 
   /// -K_G x, by module; what fixed modules would take is zero.
   Vecs softening(const Vecs& x);
@@ -42,9 +54,10 @@ class StressedBeams {
 
   const model::Robot& robot() const { return system_.robot(); }
 
-  const Bases& bases(base::Direction direction) const {
-    return bases_[static_cast<std::size_t>(base::index(direction))];
-  }
+  /// The blocks of a direction, made when they are first asked for, which no two threads may do.
+  const Bases& bases(base::Direction direction);
+
+  Vecs second_order_forces_of_beams();
 
   template <class OnPair>
   Vecs sum_over_neighbours(const OnPair& on_pair);
@@ -53,7 +66,8 @@ class StressedBeams {
   const Vecs& displacement_;
   host::Team team_;
   mechanics::LargeBeams beams_;
-  std::vector<Bases> bases_;  ///< By direction.
+  /// Blocks by direction.
+  std::array<std::unique_ptr<const Bases>, base::Lattice::kDirectionCountMax + 1> bases_;
 };
 
 }  // namespace holdfast::solver

@@ -6,12 +6,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include "factorization/beam_forces.hpp"
 #include "factorization/stressed_beams.hpp"
 #include "holdfast/base/rng.hpp"
 #include "second_order/subspace.hpp"
+#include "second_order/tree_bound.hpp"
 
 namespace holdfast::solver {
 namespace {
@@ -39,6 +41,9 @@ constexpr double kResidualShare = 1e-7;
 constexpr std::size_t kManySteps = 12;
 constexpr double kNearFactor = 10;
 constexpr double kChangeShare = 1e-2;
+
+/// A bound must be above what is asked by so much: it is rounded too.
+constexpr double kBoundMargin = 1 + 1e-6;
 
 /// Factors above this are rounding of none.
 constexpr double kFactorMax = 1e12;
@@ -178,9 +183,14 @@ class Search {
   bool is_settled_ = false;
 };
 
-/// `direct` is the system that can be factorized, if there is one.
-Buckling find_buckling(LinearSystem& system, LinearSystem* direct, StressedBeams& beams,
+Buckling find_buckling(LinearSystem& system, const DirectMaker& make_direct, StressedBeams& beams,
                        const SecondOrderOptions& options) {
+  if (!options.is_factor_wanted &&
+      buckling_factor_at_least(beams) > options.factor_max * kBoundMargin) {
+    return {.answer = BucklingAnswer::kAbove, .factor = options.factor_max};
+  }
+  const std::unique_ptr<LinearSystem> beside = system.is_exact() ? nullptr : make_direct();
+  LinearSystem* const direct = system.is_exact() ? &system : beside.get();
   if (direct == nullptr) {
     return Search(system, beams, options).find_bound();
   }
@@ -196,11 +206,10 @@ Buckling find_buckling(LinearSystem& system, LinearSystem* direct, StressedBeams
 
 }  // namespace
 
-SecondOrder second_order(LinearSystem& system, LinearSystem* direct, const Vecs& displacement,
-                         const SecondOrderOptions& options) {
+SecondOrder second_order(LinearSystem& system, const DirectMaker& make_direct,
+                         const Vecs& displacement, const SecondOrderOptions& options) {
   StressedBeams beams(system, displacement, options.thread_count);
-  LinearSystem* const factorized = system.is_exact() ? &system : direct;
-  SecondOrder result{.buckling = find_buckling(system, factorized, beams, options)};
+  SecondOrder result{.buckling = find_buckling(system, make_direct, beams, options)};
   if (result.buckling.answer == BucklingAnswer::kNoStiffness) {
     return result;
   }

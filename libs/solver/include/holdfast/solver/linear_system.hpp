@@ -223,7 +223,7 @@ class LinearSystem {
   /// Whether K + factor K_G is positive definite, K_G being the geometric stiffness of the beams,
   /// by a factorization for the present facets; none if there is none. With a factor of 0: whether
   /// K is.
-  [[nodiscard]] virtual std::optional<bool> is_definite(const StressedBeams& /*beams*/,
+  [[nodiscard]] virtual std::optional<bool> is_definite(StressedBeams& /*beams*/,
                                                         double /*factor*/) {
     return std::nullopt;
   }

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <vector>
 
 #include "holdfast/base/algebra.hpp"
@@ -22,7 +24,7 @@ namespace holdfast::solver {
 enum class BucklingAnswer : std::uint8_t {
   kFactor,      ///< It is known.
   kNone,        ///< There is none: the stresses soften nothing.
-  kAbove,       ///< It is above a bound; proved, but for rounding, by a factorization.
+  kAbove,       ///< It is above a bound; proved, but for rounding.
   kAtMost,      ///< No more than an upper bound is known, by iteration: no proof of anything.
   kNoStiffness  ///< K is singular, or rounding leaves nothing of it: there is no factor.
 };
@@ -48,11 +50,14 @@ struct SecondOrderOptions {
   int thread_count = 0;           ///< 0: as many as the machine has cores.
 };
 
+/// Makes a system that can be factorized, with the same facets in the same states, beside one that
+/// is iterated; null where there is none. It is called only where it takes a factorization to tell.
+using DirectMaker = std::function<std::unique_ptr<LinearSystem>()>;
+
 /// The displacement u2 and the buckling factor of a robot whose `system` has the facets of a
-/// solution in their states, and u1 as its displacements by module. Beside a system that is
-/// iterated there may be a `direct` one, with the same facets in the same states, for what only a
-/// factorization says. The loads of both are forgotten.
-SecondOrder second_order(LinearSystem& system, LinearSystem* direct,
+/// solution in their states, and u1 as its displacements by module. The loads of the system are
+/// forgotten.
+SecondOrder second_order(LinearSystem& system, const DirectMaker& make_direct,
                          const std::vector<base::Vec6<double>>& displacement,
                          const SecondOrderOptions& options = {});
 
