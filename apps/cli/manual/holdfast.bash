@@ -4,7 +4,7 @@ _holdfast() {
   local words='' files=''
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
-    mapfile -t COMPREPLY < <(compgen -W "check steps next order move simulate emulate convert generate robots view -h --help -V --version" -- "$current")
+    mapfile -t COMPREPLY < <(compgen -W "check steps next order move simulate emulate convert fit generate robots view -h --help -V --version" -- "$current")
     return
   fi
   case ${COMP_WORDS[1]} in
@@ -15,6 +15,7 @@ _holdfast() {
         --set) : ;;
         --support-z) : ;;
         --pitch) : ;;
+        --safety-factor|--margin) : ;;
         --json) files=1 ;;
         --connections) : ;;
         --csv) files=1 ;;
@@ -29,22 +30,31 @@ _holdfast() {
         --up-to) : ;;
         --scatter) : ;;
         --scatter-common) : ;;
+        --scatter-mass) : ;;
         --scatter-law) : ;;
         --probability) : ;;
         --lose) : ;;
         --lose-seconds) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --json --connections --csv --svg --size --title --grey --view --no-legend --vtk --html --certificate --prove --buckling --limit --limit-seconds --remedies --deformed --up-to --scatter --scatter-common --scatter-law --probability --lose-one --lose --lose-seconds -q --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --json --connections --csv --svg --size --title --grey --view --no-legend --vtk --html --certificate --prove --buckling --limit --limit-seconds --remedies --deformed --up-to --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     steps)
       case $previous in
+        --scatter) : ;;
+        --scatter-common) : ;;
+        --scatter-mass) : ;;
+        --scatter-law) : ;;
+        --probability) : ;;
+        --lose) : ;;
+        --lose-seconds) : ;;
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
         --support-z) : ;;
         --pitch) : ;;
+        --safety-factor|--margin) : ;;
         --json) files=1 ;;
         --svg) files=1 ;;
         --size) : ;;
@@ -52,7 +62,7 @@ _holdfast() {
         --html) files=1 ;;
         --vtk) files=1 ;;
         --threads) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --json --svg --size --title --grey --html --vtk --until-unsafe --verify -q --quiet --threads"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --json --svg --size --title --grey --html --vtk --until-unsafe --verify -q --quiet --threads"; else files=1; fi ;;
       esac
       ;;
     next)
@@ -62,6 +72,7 @@ _holdfast() {
         --set) : ;;
         --support-z) : ;;
         --pitch) : ;;
+        --safety-factor|--margin) : ;;
         --json) files=1 ;;
         --svg) files=1 ;;
         --size) : ;;
@@ -70,7 +81,7 @@ _holdfast() {
         --limit) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --json --svg --size --title --grey --view --no-legend --limit -q --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --json --svg --size --title --grey --view --no-legend --limit -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     order)
@@ -86,12 +97,20 @@ _holdfast() {
         -o|--output) files=1 ;;
         --json) files=1 ;;
         --certificate) files=1 ;;
+        --scatter) : ;;
+        --scatter-common) : ;;
+        --scatter-mass) : ;;
+        --scatter-law) : ;;
+        --probability) : ;;
+        --lose) : ;;
+        --lose-seconds) : ;;
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
         --support-z) : ;;
         --pitch) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --from --reach --source --group --reverse --seed --exact --seconds --help-seconds --threads -q --quiet -o --output --json --certificate --robot --lattice --set --support-z --pitch --allow-unknown"; else files=1; fi ;;
+        --safety-factor|--margin) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --from --reach --source --group --reverse --seed --exact --seconds --help-seconds --threads -q --quiet -o --output --json --certificate --strength-needed --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin"; else files=1; fi ;;
       esac
       ;;
     move)
@@ -103,12 +122,20 @@ _holdfast() {
         -o|--output) files=1 ;;
         --json) files=1 ;;
         --verify) files=1 ;;
+        --scatter) : ;;
+        --scatter-common) : ;;
+        --scatter-mass) : ;;
+        --scatter-law) : ;;
+        --probability) : ;;
+        --lose) : ;;
+        --lose-seconds) : ;;
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
         --support-z) : ;;
         --pitch) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --pivot --within --geometry-only --seed --seconds --threads -q --quiet -o --output --json --verify --robot --lattice --set --support-z --pitch --allow-unknown"; else files=1; fi ;;
+        --safety-factor|--margin) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --pivot --within --geometry-only --seed --seconds --threads -q --quiet -o --output --json --verify --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin"; else files=1; fi ;;
       esac
       ;;
     simulate)
@@ -118,6 +145,7 @@ _holdfast() {
         --set) : ;;
         --support-z) : ;;
         --pitch) : ;;
+        --safety-factor|--margin) : ;;
         --method) words="auto elimination fronts polynomial" ;;
         --link) words="v1 v2 catoms unit" ;;
         --seed) : ;;
@@ -132,6 +160,7 @@ _holdfast() {
         --plan) : ;;
         --withdraw) : ;;
         --attach) : ;;
+        --weaken) : ;;
         --json) files=1 ;;
         --connections) : ;;
         --trace) files=1 ;;
@@ -140,7 +169,7 @@ _holdfast() {
         --size) : ;;
         --title) : ;;
         --view) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --steps --stages --next --json --connections --trace --story --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --steps --stages --next --weaken --json --connections --trace --story --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
       esac
       ;;
     emulate)
@@ -179,6 +208,12 @@ _holdfast() {
         --support-z) : ;;
         --pitch) : ;;
         *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown"; else files=1; fi ;;
+      esac
+      ;;
+    fit)
+      case $previous in
+        --json) files=1 ;;
+        *) if [[ $current == -* ]]; then words="-h --help --json -q --quiet"; else files=1; fi ;;
       esac
       ;;
     generate)
