@@ -222,6 +222,7 @@ def commands(scenarios, tests):
     yield from (['check', path, '--remedies'] for path in (safe, breaks, topples))
     yield from (['check', path, '--scatter', '10%', '--lose-one'] for path in (safe, topples))
     yield ['check', general[0], '--scatter', '5%', '--scatter-common', '3%', '--lose-one']
+    yield ['check', safe, '--scatter-mass', '5%']
     yield ['check', 'cube.json', '--lose-one', '--lose-seconds', '0']
     yield from (['check', 'cube.json', '--lose-one', '--lose', part]
                 for part in ('modules', 'feet'))
@@ -229,19 +230,25 @@ def commands(scenarios, tests):
     yield ['check', 'slender.json', '--connections', '3']
     yield ['steps', f'{plan}/walk_over_beam.json']
     yield ['steps', 'walk_to_topple.json', '--until-unsafe']
+    yield ['steps', 'grows.json', '--scatter', '10%', '--probability', '0.9', '--lose-one']
     yield from (['next', path] for path in (safe, topples, *general))
     yield ['order', 'cube.json', '--reverse']
     yield ['order', 'cube.json', '--reach', 'line', '--from', 'row.json']
+    yield ['order', f'{plan}/pair.json', '--strength-needed', '--scatter', '10%', '--lose-one']
+    yield ['order', 'row.json', '--scatter', '10%', '--lose-one', '--safety-factor', '1.5']
     yield from (['order', f'{plan}/{name}.json'] for name in ('crane_near_limit', 'pair', 'arch'))
     yield ['order', f'{plan}/core.json', '--reach', 'surface', '--source', '3,0,0', '--group', '2']
     yield ['move', f'{plan}/around_arm_from.json', f'{plan}/around_arm_to.json', '--pivot']
     yield ['move', 'row.json', 'shifted.json', '--within', '0,0,0:4,0,0']
     yield ['move', 'row.json', 'leaning.json']
+    yield ['move', 'row.json', 'shifted.json', '--scatter', '50%', '--lose-one', '--lose', 'feet']
     yield from (['simulate', path] for path in (safe, breaks, topples, 'latched.json'))
     yield ['simulate', safe, '--link', 'unit', '--kill', '2,1,1@5', '--plan', '3,1,2@1']
     yield from (['simulate', path, '--next'] for path in (safe, general[0]))
     yield from (['simulate', 'grows.json', way] for way in ('--steps', '--stages'))
     yield ['simulate', 'latched.json', '--stages']
+    yield from (['fit', f'{tests.parent}/examples/experiments/{name}.json'] for name in (
+        'paper_six_tests', 'paper_and_hanging'))
     yield ['robots']
     yield ['robots', 'rofi']
 

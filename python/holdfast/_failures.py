@@ -4,7 +4,11 @@
 from __future__ import annotations
 
 import json
-from typing import Any, NamedTuple, Optional
+import os
+import pathlib
+from typing import Any, Mapping, NamedTuple, Optional, Union
+
+from . import _core
 
 
 class Reliability(NamedTuple):
@@ -19,10 +23,17 @@ class Reliability(NamedTuple):
     probability_high: Optional[float]
     """At most this."""
     strength_cv: float
+    """The largest of all connections."""
     common_cv: float
+    mass_cv: float
+    """The largest of all modules; 0 where masses do not scatter."""
     distribution: str
     likeliest: list[dict[str, Any]]
     """At most ten connections: ``a``, ``b``, ``load_ratio``, ``share`` of the cases."""
+    samples: int
+    """How many samples of masses were taken."""
+    samples_with_other_states: int
+    """In how many of them facets are in other states."""
     strength_factor_99: Optional[float]
     """With all strengths times this they hold with probability 0.99."""
     strength_factor_999: Optional[float]
@@ -59,3 +70,54 @@ def reliability_of(text: str) -> Reliability:
 
 def lose_one_of(text: str) -> LoseOne:
     return LoseOne(**json.loads(text)['lose_one'])
+
+
+class Fitted(NamedTuple):
+    """A fitted number and its interval at 95 %; None is no value, or no end."""
+
+    value: Optional[float]
+    low: Optional[float]
+    high: Optional[float]
+
+
+class Fit(NamedTuple):
+    """How strong connections are and how they scatter, by what held and what broke."""
+
+    strength_vertical_n: Fitted
+    strength_lateral_n: Fitted
+    strength_cv: Fitted
+    distribution: str
+    log_likelihood: float
+    experiments: list[dict[str, Any]]
+    """In their order: ``name``, ``probability``, ``place_probability``, ``contradicts``."""
+    next: list[dict[str, Any]]
+    """Structures that could be built next, the one that tells most first: ``name``,
+    ``probability_holds``, ``information_gain``."""
+    notes: list[str]
+    """Structures that could not be taken, and why."""
+
+
+def fit(experiments: Union[str, 'os.PathLike[str]', Mapping[str, Any]]) -> Fit:
+    """Fits strengths and their scatter to experiments, as ``holdfast fit`` does.
+
+    Parameters
+    ----------
+    experiments
+        A file, or its content as a dictionary without ``format`` and ``version``; files that this
+        names are in the working folder then.
+
+    >>> import holdfast
+    >>> pulls = [{'pull': 'vertical', 'broke_n': force} for force in (10.5, 12.1, 11.4)]
+    >>> round(holdfast.fit({'experiments': pulls}).strength_vertical_n.value, 1)
+    11.3
+    """
+    if isinstance(experiments, Mapping):
+        text = json.dumps({'format': 'holdfast-experiments', 'version': 1, **experiments})
+        folder = ''
+    else:
+        text = pathlib.Path(experiments).read_text(encoding='utf-8')
+        folder = str(pathlib.Path(experiments).parent)
+    found = json.loads(_core.fit(text, folder))
+    numbers = {key: Fitted(**found[key])
+               for key in ('strength_vertical_n', 'strength_lateral_n', 'strength_cv')}
+    return Fit(**numbers, **{key: found[key] for key in Fit._fields if key not in numbers})

@@ -173,25 +173,29 @@ class Report(Judged, Drawn):
         return Remedies(module, prop, fixing, removal, factor,
                         {kind: tried for kind, (_, tried) in found.items()})
 
-    def reliability(self, scatter: float, *, common: float = 0,
-                    law: str = 'lognormal') -> Reliability:
-        """How sure it is that every connection holds, where strengths scatter.
+    def reliability(self, scatter: Optional[float] = None, *, common: float = 0,
+                    law: Optional[str] = None, mass: Optional[float] = None) -> Reliability:
+        """How sure it is that every connection holds, where strengths and masses scatter.
 
         Parameters
         ----------
         scatter
-            Standard deviation over mean of each strength by itself, 0.1 for 10 %.
+            Standard deviation over mean of each strength by itself, 0.1 for 10 %; None: as the
+            robot's ``strength_cv``.
         common
             That of a factor that all strengths share.
         law
-            Their distribution: ``lognormal``, ``normal`` or ``weibull``.
+            Their distribution: ``lognormal``, ``normal`` or ``weibull``; None: as the robot states,
+            or lognormal.
+        mass
+            That of each module's mass; None: as the robot's ``mass_cv``.
 
         >>> from holdfast import Robot
         >>> bar = Robot([[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0]], fixed=[[0, 0, 0]])
         >>> bar.check().reliability(0.1).distribution
         'lognormal'
         """
-        return reliability_of(_core.reliability(self._held, scatter, common, law))
+        return reliability_of(_core.reliability(self._held, scatter, common, law, mass))
 
     @property
     def module_load_ratios(self) -> npt.NDArray[np.float64]:

@@ -1,10 +1,14 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "check_options.hpp"
 #include "common.hpp"
+#include "holdfast/fit.hpp"
 #include "holdfast/losses.hpp"
 #include "holdfast/reliability.hpp"
 #include "long_work.hpp"
@@ -24,26 +28,41 @@ std::string object_of(const Write& write) {
   return text;
 }
 
-double share_of(double share, const char* what) {
-  if (!(share >= verdict::kCvMin && share <= verdict::kCvMax)) {
-    throw Error(std::string(what) + ": expected a share from 0.0001 to 1, found " +
-                std::to_string(share));
+/// A share as Python says it; none for None.
+std::optional<double> share_of(const py::object& given, const char* what,
+                               double most = verdict::kCvMax) {
+  if (given.is_none()) {
+    return std::nullopt;
+  }
+  const auto share = given.cast<double>();
+  if (!(share >= verdict::kCvMin && share <= most)) {
+    throw Error(fmt::format("{}: expected a share from 0.0001 to {}, found {}", what, most, share));
   }
   return share;
 }
 
-std::string reliability(const SharedCheck& check, double scatter, double common,
-                        const std::string& law) {
-  const auto distribution = verdict::find_strength_distribution(law);
-  if (!distribution) {
-    throw Error("law: expected lognormal, normal or weibull, found '" + io::one_line(law) + "'");
+std::string reliability(const SharedCheck& check, const py::object& scatter, double common,
+                        const py::object& law, const py::object& mass) {
+  ScatterWish wish{.strength_cv = share_of(scatter, "scatter"),
+                   .common_cv = common == 0 ? 0 : *share_of(py::float_(common), "common"),
+                   .mass_cv = share_of(mass, "mass", verdict::kMassCvMax)};
+  if (!law.is_none()) {
+    const auto name = law.cast<std::string>();
+    wish.distribution = verdict::find_strength_distribution(name);
+    if (!wish.distribution) {
+      throw Error("law: expected lognormal, normal or weibull, found '" + io::one_line(name) + "'");
+    }
   }
-  const verdict::StrengthScatter how{.distribution = *distribution,
-                                     .cv = share_of(scatter, "scatter"),
-                                     .common_cv = common == 0 ? 0 : share_of(common, "common")};
+  const Structure& structure = *check->structure;
+  const auto how = find_scatter(structure, wish);
+  if (!how) {
+    throw Error(
+        "nothing is known to scatter, expected scatter, common or mass, or strength_cv or "
+        "mass_cv of the robot");
+  }
   return object_of([&](io::JsonStream& json) {
-    write_reliability_member(json, check->structure->robot, how,
-                             find_reliability(check->result, how));
+    write_reliability_member(json, structure.robot, *how,
+                             find_reliability(structure, check->result, *how));
   });
 }
 
@@ -74,11 +93,18 @@ std::string lose_one(const SharedStructure& structure, const std::vector<std::st
       [&](io::JsonStream& json) { write_lose_one_member(json, structure->robot, report); });
 }
 
+/// Fits experiments in a text; structures are files in the folder.
+std::string fit(const std::string& text, const std::string& folder) {
+  const FitReport report = take(without_gil([&] { return fit_text(text, folder); }));
+  return fit_json(report);
+}
+
 }  // namespace
 
 void add_failures(py::module_& module) {
   module.def("reliability", &reliability);
   module.def("lose_one", &lose_one);
+  module.def("fit", &fit);
 }
 
 }  // namespace holdfast::python

@@ -395,7 +395,7 @@ expect_line out '^  check  '
 cp out help.txt
 expect_exit 0 help
 cmp -s out help.txt || fault "holdfast help is not holdfast --help"
-for command in check steps next order move simulate emulate convert generate robots view; do
+for command in check steps next order move simulate emulate convert fit generate robots view; do
   expect_exit 0 "$command" --help
   expect_line out "^Usage: holdfast $command "
   expect_line out "^  holdfast $command "

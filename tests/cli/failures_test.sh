@@ -43,7 +43,6 @@ for bad in 10 -5% 0 0% 300% x% % nan% inf% '10 percent'; do
   expect_usage '^holdfast check: --scatter: expected a percentage from 0.01% to 100%, such as' \
     check "$safe" --scatter "$bad"
 done
-expect_usage '^holdfast check: --scatter-common requires --scatter$' check a --scatter-common 5%
 expect_usage '^holdfast check: --scatter-law: expected lognormal, normal or weibull; found' \
   check a --scatter 5% --scatter-law cauchy
 expect_usage '^holdfast check: --lose: expected connections, modules or feet; found' \

@@ -15,6 +15,7 @@ _holdfast() {
         --set) : ;;
         --support-z) : ;;
         --pitch) : ;;
+        --safety-factor|--margin) : ;;
         --json) files=1 ;;
         --connections) words="all broken" ;;
         --csv) files=1 ;;
@@ -35,16 +36,24 @@ _holdfast() {
         --lose-seconds) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --json --connections --csv --svg --size --title --grey --view --no-legend --vtk --html --certificate --prove --buckling --limit --limit-seconds --remedies --deformed --up-to --scatter --scatter-common --scatter-law --probability --lose-one --lose --lose-seconds -q --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --json --connections --csv --svg --size --title --grey --view --no-legend --vtk --html --certificate --prove --buckling --limit --limit-seconds --remedies --deformed --up-to --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     steps)
       case $previous in
+        --scatter) : ;;
+        --scatter-common) : ;;
+        --scatter-mass) : ;;
+        --scatter-law) : ;;
+        --probability) : ;;
+        --lose) : ;;
+        --lose-seconds) : ;;
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
         --support-z) : ;;
         --pitch) : ;;
+        --safety-factor|--margin) : ;;
         --json) files=1 ;;
         --svg) files=1 ;;
         --size) : ;;
@@ -64,6 +73,7 @@ _holdfast() {
         --set) : ;;
         --support-z) : ;;
         --pitch) : ;;
+        --safety-factor|--margin) : ;;
         --json) files=1 ;;
         --svg) files=1 ;;
         --size) : ;;
@@ -72,7 +82,7 @@ _holdfast() {
         --limit) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --json --svg --size --title --grey --view --no-legend --limit -q --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --json --svg --size --title --grey --view --no-legend --limit -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     order)
@@ -88,12 +98,20 @@ _holdfast() {
         -o|--output) files=1 ;;
         --json) files=1 ;;
         --certificate) files=1 ;;
+        --scatter) : ;;
+        --scatter-common) : ;;
+        --scatter-mass) : ;;
+        --scatter-law) : ;;
+        --probability) : ;;
+        --lose) : ;;
+        --lose-seconds) : ;;
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
         --support-z) : ;;
         --pitch) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --from --reach --source --group --reverse --seed --exact --seconds --help-seconds --threads -q --quiet -o --output --json --certificate --robot --lattice --set --support-z --pitch --allow-unknown"; else files=1; fi ;;
+        --safety-factor|--margin) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --from --reach --source --group --reverse --seed --exact --seconds --help-seconds --threads -q --quiet -o --output --json --certificate --strength-needed --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin"; else files=1; fi ;;
       esac
       ;;
     move)
@@ -105,12 +123,20 @@ _holdfast() {
         -o|--output) files=1 ;;
         --json) files=1 ;;
         --verify) files=1 ;;
+        --scatter) : ;;
+        --scatter-common) : ;;
+        --scatter-mass) : ;;
+        --scatter-law) : ;;
+        --probability) : ;;
+        --lose) : ;;
+        --lose-seconds) : ;;
         --robot) : ;;
         --lattice) : ;;
         --set) : ;;
         --support-z) : ;;
         --pitch) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --pivot --within --geometry-only --seed --seconds --threads -q --quiet -o --output --json --verify --robot --lattice --set --support-z --pitch --allow-unknown"; else files=1; fi ;;
+        --safety-factor|--margin) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --pivot --within --geometry-only --seed --seconds --threads -q --quiet -o --output --json --verify --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin"; else files=1; fi ;;
       esac
       ;;
     simulate)
@@ -120,6 +146,7 @@ _holdfast() {
         --set) : ;;
         --support-z) : ;;
         --pitch) : ;;
+        --safety-factor|--margin) : ;;
         --method) words="auto elimination fronts polynomial" ;;
         --link) words="v1 v2 catoms unit" ;;
         --seed) : ;;
@@ -134,6 +161,7 @@ _holdfast() {
         --plan) : ;;
         --withdraw) : ;;
         --attach) : ;;
+        --weaken) : ;;
         --json) files=1 ;;
         --connections) words="all broken" ;;
         --trace) files=1 ;;
@@ -212,6 +240,12 @@ _holdfast() {
         --support-z) : ;;
         --pitch) : ;;
         *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown"; else files=1; fi ;;
+      esac
+      ;;
+    fit)
+      case $previous in
+        --json) files=1 ;;
+        *) if [[ $current == -* ]]; then words="-h --help --json -q --quiet"; else files=1; fi ;;
       esac
       ;;
     generate)

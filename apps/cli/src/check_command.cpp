@@ -11,6 +11,7 @@
 #include "holdfast/trial.hpp"
 #include "lose_one_options.hpp"
 #include "page.hpp"
+#include "plan_failure_options.hpp"
 #include "progress.hpp"
 #include "reading.hpp"
 #include "scatter_options.hpp"
@@ -89,8 +90,10 @@ class CheckRun {
       return;
     }
     Structure structure = std::move(loaded).value();
-    const bool is_document_needed =
-        !options_.html.empty() || options_.are_remedies_wanted || options_.lose_one.is_wanted;
+    const auto scatter = find_scatter(structure, read_scatter(options_.scatter));
+    const bool is_document_needed = !options_.html.empty() || options_.are_remedies_wanted ||
+                                    options_.lose_one.is_wanted ||
+                                    (scatter && !scatter->mass_cv.empty());
     if (!is_document_needed) {
       structure.document.modules = std::vector<io::ModuleEntry>();
     }
@@ -126,14 +129,16 @@ class CheckRun {
   MoreAnswers find_more(const Structure& structure, const CheckResult& result,
                         const CheckOptions& how, const std::string& file) {
     MoreAnswers more;
-    if (options_.scatter.is_wanted()) {
-      const auto scatter = read_scatter(options_.scatter);
-      const auto reliability = find_reliability(result, scatter);
+    if (const auto scatter = find_scatter(structure, read_scatter(options_.scatter))) {
+      const auto reliability = find_reliability(structure, result, *scatter, how);
       count_exit(exit_code_of(options_.scatter, reliability));
       more.text += reliability_text(structure.robot, reliability);
       more.members.emplace_back([&structure, scatter, reliability](io::JsonStream& json) {
-        write_reliability_member(json, structure.robot, scatter, reliability);
+        write_reliability_member(json, structure.robot, *scatter, reliability);
       });
+    } else if (options_.scatter.is_wanted()) {
+      ++bad_count_;
+      print_error(nothing_scatters(), file);
     }
     if (options_.lose_one.is_wanted) {
       LoseOneOptions options = lose_one_options(options_.lose_one, how);
@@ -406,6 +411,7 @@ Command add_check(CLI::App& app) {
   add_required(*command, "FILE", options->files,
                "Structures in any format that holdfast convert lists; - is standard input");
   add_reading(*command, options->reading);
+  add_safety_factor(*command, options->reading);
   add_output(*command, "--json", options->json,
              "Write the whole report as JSON; - is standard output");
   add_connections(*command, options->connections);

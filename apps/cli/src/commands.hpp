@@ -35,6 +35,7 @@ struct Command {
 Command add_check(CLI::App& app);
 Command add_convert(CLI::App& app);
 Command add_emulate(CLI::App& app);
+Command add_fit(CLI::App& app);
 Command add_generate(CLI::App& app);
 Command add_listen(CLI::App& app);
 Command add_move(CLI::App& app);

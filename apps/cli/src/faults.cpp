@@ -65,6 +65,27 @@ std::optional<ChangePlace> read_change_place(std::string_view text, bool allows_
   return take_time(text, place.time) ? std::optional(place) : std::nullopt;
 }
 
+std::optional<Weakening> read_weakening(std::string_view text) {
+  Weakening weakening;
+  if (!take_cell(text, weakening.cell) || !take_mark(text, ':')) {
+    return std::nullopt;
+  }
+  const auto face = find_direction(text);
+  if (!face || !take_mark(text, '=') || !take_number(text, weakening.share) || !text.empty() ||
+      !(weakening.share >= 1e-6 && weakening.share <= 1)) {
+    return std::nullopt;
+  }
+  weakening.direction = *face;
+  return weakening;
+}
+
+std::string weakening_usage(std::string_view text) {
+  return fmt::format(
+      "expected X,Y,Z:FACE=SHARE, FACE one of +x, -x, +y, -y, +z, -z and SHARE above 0 up to 1, as "
+      "in 2,1,0:+x=0.5; found '{}'",
+      io::one_line(text));
+}
+
 std::string change_usage(std::string_view option, std::string_view text, bool allows_all) {
   return fmt::format("--{} {}: expected X,Y,Z@TIME{}, as in 2,1,0@1.5", option, io::one_line(text),
                      allows_all ? " or all@TIME" : "");

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "holdfast/distributed.hpp"
+#include "holdfast/weakened.hpp"
 
 /// Faults and changes as they are written on the command line: "X,Y,Z@T", at a face "X,Y,Z:+x@T".
 namespace holdfast::cli {
@@ -34,5 +35,11 @@ std::optional<ChangePlace> read_change_place(std::string_view text, bool allows_
 std::string change_usage(std::string_view option, std::string_view text, bool allows_all);
 std::string fault_usage(std::string_view option, std::string_view text, bool has_face);
 std::string no_module(std::string_view option, std::string_view text, const base::Cell& cell);
+
+/// Reads "X,Y,Z:FACE=SHARE", a share above 0 and up to 1; none if the text is something else.
+std::optional<Weakening> read_weakening(std::string_view text);
+
+/// Says how --weaken is used.
+std::string weakening_usage(std::string_view text);
 
 }  // namespace holdfast::cli

@@ -75,10 +75,10 @@ int run(int argc, char** argv) {
                        "Print the version and exit");
   app.require_subcommand(1);
   const cli::Command commands[] = {
-      cli::add_check(app),  cli::add_steps(app),    cli::add_next(app),    cli::add_order(app),
-      cli::add_move(app),   cli::add_simulate(app), cli::add_emulate(app), cli::add_listen(app),
-      cli::add_tell(app),   cli::add_twin(app),     cli::add_convert(app), cli::add_generate(app),
-      cli::add_robots(app), cli::add_view(app)};
+      cli::add_check(app),    cli::add_steps(app),    cli::add_next(app),    cli::add_order(app),
+      cli::add_move(app),     cli::add_simulate(app), cli::add_emulate(app), cli::add_listen(app),
+      cli::add_tell(app),     cli::add_twin(app),     cli::add_convert(app), cli::add_fit(app),
+      cli::add_generate(app), cli::add_robots(app),   cli::add_view(app)};
   for (const cli::Command& command : commands) {
     formatter->set(command.app, command.help);
   }

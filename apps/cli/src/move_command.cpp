@@ -11,6 +11,7 @@
 #include "file_clash.hpp"
 #include "holdfast/move.hpp"
 #include "interruption.hpp"
+#include "plan_failure_options.hpp"
 #include "progress.hpp"
 #include "reading.hpp"
 
@@ -18,6 +19,7 @@ namespace holdfast::cli {
 namespace {
 
 struct MoveArguments {
+  PlanFailureOptions failures;
   Reading reading;
   std::string start;
   std::string target;
@@ -63,7 +65,8 @@ int outcome_code(plan::MoveOutcome outcome) {
 
 /// Writes what is asked for; the exit code is that of a file that cannot be written, or the
 /// answer's.
-int show(const MoveArguments& options, const io::MoveReport& report) {
+int show(const MoveArguments& options, const io::MoveReport& report,
+         const PlanFailureAnswer& failures) {
   const bool has_moves =
       report.plan.outcome == plan::MoveOutcome::kFound || !report.plan.steps.empty();
   if (!options.steps.empty() && has_moves &&
@@ -73,13 +76,14 @@ int show(const MoveArguments& options, const io::MoveReport& report) {
   if (!has_moves) {
     print_not_written(options.steps, "there are no moves");
   }
-  if (!options.json.empty() && !write_or_complain(options.json, io::move_json(report))) {
+  if (!options.json.empty() &&
+      !write_or_complain(options.json, io::move_json(report, failures.member_list()))) {
     return kExitBadInput;
   }
   if (!options.is_quiet && leaves_standard_output(options.outputs())) {
-    fmt::print("{}", io::move_text(report));
+    fmt::print("{}{}", io::move_text(report), failures.text);
   }
-  return outcome_code(report.plan.outcome);
+  return worse(outcome_code(report.plan.outcome), failures);
 }
 
 /// The file that the target is in: a goal shape is in that of the robot.
@@ -172,7 +176,11 @@ int run(const MoveArguments& options) {
   io::MoveReport report = std::move(sought).value();
   report.origin = options.reading.origin(options.start);
   report.origin.target = target_file(options);
-  return show(options, report);
+  const auto failures = report.plan.outcome == plan::MoveOutcome::kFound
+                            ? find_plan_failures(io::move_steps(report), options.failures,
+                                                 options.thread_count, progress)
+                            : base::Result<PlanFailureAnswer>(PlanFailureAnswer());
+  return failures ? show(options, report, failures.value()) : fail(failures.error(), options.start);
 }
 
 void add_ways(CLI::App& command, MoveArguments& options) {
@@ -226,7 +234,9 @@ Command add_move(CLI::App& app) {
                    "Verify the certificate in an earlier JSON report of the same FROM, TO "
                    "and ways to go")
       ->type_name("FILE");
+  add_plan_failure_options(*command, options->failures);
   add_reading(*command, options->reading);
+  add_safety_factor(*command, options->reading);
   return {command,
           [options] { return run(*options); },
           {.examples = {{"move line.json bridge.json", "how does the robot get there?"},

@@ -8,6 +8,7 @@
 #include "figure.hpp"
 #include "file_clash.hpp"
 #include "holdfast/trial.hpp"
+#include "plan_failure_options.hpp"
 #include "progress.hpp"
 #include "reading.hpp"
 
@@ -96,6 +97,7 @@ Command add_next(CLI::App& app) {
   add_required(*command, "FILE", options->file,
                "Structure: VisibleSim XML, holdfast JSON or binary; - is standard input");
   add_reading(*command, options->reading);
+  add_safety_factor(*command, options->reading);
   add_output(*command, "--json", options->json, "Write the places as JSON; - is standard output");
   add_figure(*command, options->figure, "Draw the structure and a ghost in every place");
   command

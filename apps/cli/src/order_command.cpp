@@ -13,6 +13,7 @@
 #include "holdfast/move.hpp"
 #include "holdfast/order.hpp"
 #include "interruption.hpp"
+#include "plan_failure_options.hpp"
 #include "progress.hpp"
 #include "reading.hpp"
 
@@ -28,6 +29,8 @@ struct OrderArguments {
   std::size_t group_size = 1;
   bool is_reversed = false;
   bool is_exact = false;
+  bool is_strength_wanted = false;
+  PlanFailureOptions failures;
   std::uint64_t seed = 0;
   double seconds = 300;
   double help_seconds = 10;
@@ -113,9 +116,15 @@ int outcome_code(plan::OrderOutcome outcome) {
   return kExitUndecided;
 }
 
+/// What is said behind an order.
+struct More {
+  std::string text;
+  std::vector<std::string> members;
+};
+
 /// Writes what is asked for; the exit code is that of a file that cannot be written, or the
 /// answer's.
-int show(const OrderArguments& options, const io::OrderReport& report) {
+int show(const OrderArguments& options, const io::OrderReport& report, const More& more) {
   const plan::OrderOutcome outcome = report.result.order.outcome;
   const bool has_way = !report.result.order.steps.empty();
   if (!options.steps.empty() && has_way) {
@@ -138,14 +147,27 @@ int show(const OrderArguments& options, const io::OrderReport& report) {
                                                             *report.result.certificate))) {
     return kExitBadInput;
   }
-  if (!options.json.empty() && !write_or_complain(options.json, io::order_json(report))) {
+  if (!options.json.empty() &&
+      !write_or_complain(options.json, io::order_json(report, more.members))) {
     return kExitBadInput;
   }
   if (!options.is_quiet && leaves_standard_output(options.outputs())) {
     const bool is_way_shown = has_way && options.steps.empty() && options.json.empty();
-    fmt::print("{}{}", io::order_text(report), is_way_shown ? io::order_way_text(report) : "");
+    fmt::print("{}{}{}", io::order_text(report), more.text,
+               is_way_shown ? io::order_way_text(report) : "");
   }
   return outcome_code(outcome);
+}
+
+/// How sure the states of an order are, as its steps would be.
+base::Result<PlanFailureAnswer> failures_of(const OrderArguments& options,
+                                            const io::OrderReport& report, Progress& progress) {
+  if (!options.failures.is_wanted()) {
+    return PlanFailureAnswer{};
+  }
+  const auto steps = io::order_steps(report.target, report.result.order, report.is_reversed);
+  return steps ? find_plan_failures(steps.value(), options.failures, options.thread_count, progress)
+               : steps.error();
 }
 
 int run(const OrderArguments& options) {
@@ -175,9 +197,18 @@ int run(const OrderArguments& options) {
     }
     request.start = std::move(cells).value();
   }
-  auto sought = [&] {
+  More more;
+  auto sought = [&]() -> base::Result<io::OrderReport> {
     const Interruption interruption;
-    return seek_order(read.value().document, request);
+    if (!options.is_strength_wanted) {
+      return seek_order(read.value().document, request);
+    }
+    auto needed = seek_strength_needed(read.value().document, request);
+    if (!needed) {
+      return needed.error();
+    }
+    more = {strength_needed_text(needed.value()), {strength_needed_member(needed.value())}};
+    return std::move(needed.value().report);
   }();
   if (!sought) {
     base::Error error = sought.error();
@@ -187,7 +218,17 @@ int run(const OrderArguments& options) {
   }
   io::OrderReport report = std::move(sought).value();
   report.origin = options.reading.origin(options.target);
-  return show(options, report);
+  auto failures = base::Result<PlanFailureAnswer>(PlanFailureAnswer());
+  if (report.result.order.outcome == plan::OrderOutcome::kFound) {
+    failures = failures_of(options, report, progress);
+    if (!failures) {
+      return fail(failures.error(), options.target);
+    }
+    more.text += failures.value().text;
+    const auto members = failures.value().member_list();
+    more.members.insert(more.members.end(), members.begin(), members.end());
+  }
+  return worse(show(options, report, more), failures.value());
 }
 
 void add_ways(CLI::App& command, OrderArguments& options) {
@@ -267,7 +308,13 @@ Command add_order(CLI::App& app) {
   add_output(*command, "--certificate", options->certificate,
              "Where there is no order, write what proves it; holdfast steps --verify replays "
              "it");
+  command
+      ->add_flag("--strength-needed", options->is_strength_wanted,
+                 "Find the least factor of all strengths with which there is a safe order")
+      ->excludes("--certificate");
+  add_plan_failure_options(*command, options->failures);
   add_reading(*command, options->reading);
+  add_safety_factor(*command, options->reading);
   return {command,
           [options] { return run(*options); },
           {.examples = {{"order arch.json", "in which order can it be built?"},

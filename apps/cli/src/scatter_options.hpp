@@ -12,18 +12,26 @@
 namespace holdfast::cli {
 
 struct ScatterOptions {
-  std::string cv;      ///< Empty if nothing is asked for.
-  std::string common;  ///< Empty: none.
-  std::string distribution = "lognormal";
-  double probability = 0;  ///< 0: none is asked for.
+  std::string cv;            ///< Empty: as the structure states.
+  std::string common;        ///< Empty: none.
+  std::string mass;          ///< Empty: as the structure states.
+  std::string distribution;  ///< Empty: as the structure states.
+  double probability = 0;    ///< 0: none is asked for.
 
-  bool is_wanted() const { return !cv.empty(); }
+  /// Whether there must be something that scatters.
+  bool is_wanted() const {
+    return !cv.empty() || !common.empty() || !mass.empty() || !distribution.empty() ||
+           probability > 0;
+  }
 };
 
 void add_scatter_options(CLI::App& command, ScatterOptions& options);
 
 /// The scatter that is asked for.
-verdict::StrengthScatter read_scatter(const ScatterOptions& options);
+ScatterWish read_scatter(const ScatterOptions& options);
+
+/// What is wrong where options ask how sure it is, and neither they nor the file say what scatters.
+base::Error nothing_scatters();
 
 /// The exit code of a robot that is safe by itself, by the probability that is asked for: it is
 /// unsafe if that is not reached, and undecided if that is not certain or no probability is known.

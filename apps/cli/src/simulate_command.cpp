@@ -15,6 +15,7 @@
 #include "holdfast/simulated_next.hpp"
 #include "holdfast/simulated_stages.hpp"
 #include "holdfast/simulated_steps.hpp"
+#include "plan_failure_options.hpp"
 #include "progress.hpp"
 #include "reading.hpp"
 #include "run_report.hpp"
@@ -24,6 +25,7 @@ namespace {
 
 struct SimulateArguments {
   Reading reading;
+  std::vector<std::string> weakened;
   std::string file;
   std::string method = "auto";
   std::string link = "v1";
@@ -125,7 +127,7 @@ class SimulateRun {
     if (options_.asks_next) {
       return run_next();
     }
-    const auto structure = load_with_notes(options_.file, options_.reading);
+    const auto structure = load();
     if (!structure) {
       return fail(structure.error(), options_.file);
     }
@@ -134,6 +136,26 @@ class SimulateRun {
   }
 
  private:
+  /// The structure, its connectors weakened as is asked for.
+  base::Result<Structure> load() const {
+    auto loaded = load_with_notes(options_.file, options_.reading);
+    if (!loaded || options_.weakened.empty()) {
+      return loaded;
+    }
+    Structure structure = std::move(loaded).value();
+    for (const std::string& text : options_.weakened) {
+      if (const auto error = weaken(structure.document, *read_weakening(text))) {
+        return *error;
+      }
+    }
+    auto weakened = make_structure(structure.document, structure.name);
+    if (weakened) {
+      structure.robot = std::move(weakened).value().robot;
+      return structure;
+    }
+    return weakened.error();
+  }
+
   /// Whether an option asks for something that happens to the robot while it runs, or for its
   /// record.
   bool has_happenings() const {
@@ -149,7 +171,7 @@ class SimulateRun {
           "--next goes with none of --kill, --cut, --detach, --plan, --withdraw, --attach, "
           "--trace, --story");
     }
-    const auto structure = load_with_notes(options_.file, options_.reading);
+    const auto structure = load();
     if (!structure) {
       return fail(structure.error(), options_.file);
     }
@@ -352,6 +374,7 @@ Command add_simulate(CLI::App& app) {
   add_required(*command, "FILE", options->file,
                "Structure: VisibleSim XML, holdfast JSON or binary; - is standard input");
   add_reading(*command, options->reading);
+  add_safety_factor(*command, options->reading);
   command
       ->add_option(
           "--method", options->method,
@@ -379,6 +402,16 @@ Command add_simulate(CLI::App& app) {
   command->add_flag("--next", options->asks_next,
                     "Let the robot judge all its free faces together, then what that leaves "
                     "undecided one by one");
+  command
+      ->add_option("--weaken", options->weakened,
+                   "A module's connector has this share of its strengths, and the module knows it")
+      ->type_name("X,Y,Z:FACE=SHARE")
+      ->allow_extra_args(false)
+      ->excludes("--steps")
+      ->excludes("--stages")
+      ->check([](const std::string& text) {
+        return read_weakening(text) ? std::string() : weakening_usage(text);
+      });
   add_output(*command, "--json", options->json, "Write the report; - is standard output");
   add_connections(*command, options->connections);
   add_output(*command, "--trace", options->trace, "Write all packets for ui.perfetto.dev");

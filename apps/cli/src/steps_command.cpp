@@ -10,6 +10,7 @@
 #include "file_clash.hpp"
 #include "holdfast/order.hpp"
 #include "holdfast/steps.hpp"
+#include "plan_failure_options.hpp"
 #include "progress.hpp"
 #include "reading.hpp"
 
@@ -17,6 +18,7 @@ namespace holdfast::cli {
 namespace {
 
 struct StepsArguments {
+  PlanFailureOptions failures;
   Reading reading;
   std::string file;
   std::string target;
@@ -94,11 +96,12 @@ bool write_picture(const StepsArguments& options, const StepsFile& file,
                                   [&](const io::FigureOptions&) { return picture.value(); });
 }
 
-bool write_files(const StepsArguments& options, const StepsFile& file, const StepsResult& result) {
+bool write_files(const StepsArguments& options, const StepsFile& file, const StepsResult& result,
+                 const PlanFailureAnswer& failures) {
   bool is_written = true;
   if (!options.json.empty()) {
     is_written = write_or_complain(options.json, [&](std::ostream& out) {
-      write_steps_json(out, file, result);
+      write_steps_json(out, file, result, failures.members);
       out << '\n';
     });
   }
@@ -209,12 +212,19 @@ int run(const StepsArguments& options) {
   if (!result) {
     return fail(result.error(), options.file);
   }
+  const auto failures =
+      find_plan_failures(file.value().document, options.failures, options.thread_count, progress);
+  if (!failures) {
+    return fail(failures.error(), options.file);
+  }
   const verdict::Verdict verdict = result.value().judgement.verdict();
   if (!options.is_quiet && leaves_standard_output(options.outputs())) {
-    fmt::print("{} {}\n{}", banner(verdict), io::one_line(file.value().name),
-               steps_text(file.value(), result.value()));
+    fmt::print("{} {}\n{}{}", banner(verdict), io::one_line(file.value().name),
+               steps_text(file.value(), result.value()), failures.value().text);
   }
-  return write_files(options, file.value(), result.value()) ? exit_code(verdict) : kExitBadInput;
+  return write_files(options, file.value(), result.value(), failures.value())
+             ? worse(exit_code(verdict), failures.value())
+             : kExitBadInput;
 }
 
 /// Adds what chooses states to draw in place of curves.
@@ -255,7 +265,9 @@ Command add_steps(CLI::App& app) {
       ->add_option("TARGET", options->target,
                    "With --verify: the robot that the certificate has to be of")
       ->type_name("");
+  add_plan_failure_options(*command, options->failures);
   add_reading(*command, options->reading);
+  add_safety_factor(*command, options->reading);
   add_output(*command, "--json", options->json,
              "Write the whole report as JSON; - is standard output");
   add_figure(*command, options->figure, "Draw verdicts, load ratio and margin along the sequence");

@@ -73,8 +73,9 @@ base::Result<StepsResult> judge_steps(const StepsFile& file, const StepsOptions&
   return result;
 }
 
-void write_steps_json(std::ostream& out, const StepsFile& file, const StepsResult& result) {
-  io::write_steps_json(out, entry_of(file, result));
+void write_steps_json(std::ostream& out, const StepsFile& file, const StepsResult& result,
+                      const io::MoreKeys& more) {
+  io::write_steps_json(out, entry_of(file, result), more);
 }
 
 std::string steps_svg(const StepsFile& file, const StepsResult& result,

@@ -40,7 +40,7 @@ nlohmann::json member_of(const Structure& structure, const char* key, const Writ
 TEST(FailuresReport, has_the_probability_and_who_fails) {
   const Structure structure = post(3);
   const verdict::StrengthScatter scatter = {.cv = 0.4};
-  const auto found = find_reliability(check(structure), scatter);
+  const auto found = find_reliability(structure, check(structure), scatter);
   ASSERT_TRUE(found);
   const nlohmann::json said = member_of(structure, "reliability", [&](io::JsonStream& json) {
     write_reliability_member(json, structure.robot, scatter, found);
@@ -58,7 +58,7 @@ TEST(FailuresReport, has_the_probability_and_who_fails) {
 TEST(FailuresReport, says_where_no_probability_is_known) {
   const Structure structure = post(40);  // It topples.
   const verdict::StrengthScatter scatter = {.cv = 0.1};
-  const auto found = find_reliability(check(structure), scatter);
+  const auto found = find_reliability(structure, check(structure), scatter);
   EXPECT_FALSE(found);
   const nlohmann::json said = member_of(structure, "reliability", [&](io::JsonStream& json) {
     write_reliability_member(json, structure.robot, scatter, found);

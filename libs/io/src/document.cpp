@@ -76,6 +76,20 @@ base::Result<ReadDocument> with_support(base::Result<ReadDocument> read,
   return ReadDocument{std::move(document), std::move(warnings)};
 }
 
+/// Takes the safety factor that an option says.
+base::Result<ReadDocument> with_factor(base::Result<ReadDocument> read,
+                                       const ReadOptions& options) {
+  if (!read || options.safety_factor == 1) {
+    return read;
+  }
+  auto [document, warnings] = std::move(read).value();
+  document.safety_factor = options.safety_factor;
+  warnings.push_back(fmt::format(
+      "strengths are divided by {}, the safety factor, and load ratios refer to what is left",
+      options.safety_factor));
+  return ReadDocument{std::move(document), std::move(warnings)};
+}
+
 base::Result<ReadDocument> read_any(std::string_view text, const ReadOptions& options) {
   const auto* const foreign =
       text.starts_with(kBinaryMagic) ? nullptr : find_foreign_format(text, options.ending);
@@ -100,7 +114,7 @@ base::Result<ReadDocument> read_any(std::string_view text, const ReadOptions& op
 }  // namespace
 
 base::Result<ReadDocument> read_document(std::string_view text, const ReadOptions& options) {
-  return with_support(read_any(text, options), options);
+  return with_factor(with_support(read_any(text, options), options), options);
 }
 
 }  // namespace holdfast::io

@@ -10,6 +10,7 @@
 
 #include "holdfast/io/near_miss.hpp"
 #include "holdfast/io/report.hpp"
+#include "json/json_connectors.hpp"
 #include "numbers.hpp"
 #include "reading.hpp"
 #include "text_input.hpp"
@@ -24,6 +25,13 @@ bool is_connector_key(std::string_view key) {
   return key != kBendingKey && std::ranges::find(kConnectorKeys, key) != kConnectorKeys.end();
 }
 
+/// The member of a scatter that a key sets; null if it sets none.
+std::optional<double> Scatter::*cv_of(std::string_view key) {
+  return key == kScatterKeys[0]   ? &Scatter::strength_cv
+         : key == kScatterKeys[1] ? &Scatter::mass_cv
+                                  : nullptr;
+}
+
 bool is_class_strength(std::string_view key) {
   return std::ranges::find(kClassStrengthKeys, key) != kClassStrengthKeys.end();
 }
@@ -34,6 +42,7 @@ base::Error unknown_key(std::string_view key) {
   for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
     names.push_back(parameter.key);
   }
+  names.insert(names.end(), kKindScatterKeys.begin(), kKindScatterKeys.end());
   const auto near = near_miss(key, names);
   return base::bad_input(fmt::format(
       "a material has no '{}'{}", one_line(key),
@@ -54,6 +63,10 @@ base::Result<Setting> find_setting(std::string_view text) {
   key.remove_prefix(key.starts_with(kMaterialPrefix) ? kMaterialPrefix.size() : 0);
   if (const model::MaterialParameter* const parameter = model::find_parameter(key)) {
     if (auto fault = model::find_fault(*parameter, *value)) {
+      return base::bad_input(*std::move(fault));
+    }
+  } else if (cv_of(key) != nullptr) {
+    if (auto fault = find_cv_fault(key, *value)) {
       return base::bad_input(*std::move(fault));
     }
   } else if (!is_connector_key(key)) {
@@ -89,6 +102,10 @@ std::optional<std::string> take_setting(const Setting& setting, Document& docume
   }
   if (const model::MaterialParameter* const parameter = model::find_parameter(setting.key)) {
     take_number(*parameter, setting.value, document);
+    return std::nullopt;
+  }
+  if (const auto cv = cv_of(setting.key)) {
+    document.extension.scatter.*cv = setting.value;
     return std::nullopt;
   }
   std::erase_if(parameters, is_key(setting.key));

@@ -109,12 +109,26 @@ inline constexpr auto kClassStrengthKeys =
     std::to_array<std::string_view>({"strength_vertical_n", "strength_lateral_n"});
 inline constexpr auto kClassKeys = std::to_array<std::string_view>({"vertical", "lateral"});
 
+/// Whether a parameter of connections is a strength, which safety factors divide.
+constexpr bool is_strength_key(std::string_view key) {
+  return is_one_of(key, {kStrengthKey, kClassStrengthKeys[0], kClassStrengthKeys[1],
+                         "shear_strength_n", "torsion_strength_nmm"});
+}
+
+/// How strengths and masses scatter: keys of the material, and but for the last of kinds.
+inline constexpr auto kScatterKeys =
+    std::to_array<std::string_view>({"strength_cv", "mass_cv", "strength_distribution"});
+inline constexpr auto kKindScatterKeys =
+    std::to_array<std::string_view>({kScatterKeys[0], kScatterKeys[1]});
+
 /// The key of the material for the width of the facets of modules that are no cubes.
 inline constexpr std::string_view kFootKey = "foot_mm";
 
 /// The parameters in which a kind of modules may differ from the material.
-inline constexpr auto kKindKeys = joined(
-    joined(std::to_array<std::string_view>({"mass_kg"}), kClassStrengthKeys), kConnectorKeys);
+inline constexpr auto kKindKeys =
+    joined(joined(joined(std::to_array<std::string_view>({"mass_kg"}), kClassStrengthKeys),
+                  kConnectorKeys),
+           kKindScatterKeys);
 
 /// Names of how bending moments about two axes count together, by model::BendingLaw.
 inline constexpr auto kBendingNames = std::to_array<std::string_view>({"square", "round"});
@@ -232,6 +246,7 @@ inline const std::vector<std::string_view>& material_keys(bool is_extended) {
     if (with_extension) {
       list.insert(list.end(), kConnectorKeys.begin(), kConnectorKeys.end());
       list.push_back(kFootKey);
+      list.insert(list.end(), kScatterKeys.begin(), kScatterKeys.end());
     }
     return list;
   };

@@ -6,14 +6,11 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numeric>
-#include <string_view>
+#include <map>
 #include <utility>
 
 namespace holdfast::verdict {
 namespace {
-
-constexpr double kRootOfTwo = 1.41421356237309504880;
 
 /// G is a function of a standard normal number z, and what is asked for is integrated over z by the
 /// trapezoidal rule, which converges faster than any power of its step. Beyond this z there is
@@ -31,45 +28,62 @@ constexpr double kNegligible = 1e-18;
 /// Factors of strengths are found to this share.
 constexpr double kFactorDigits = 1e-7;
 
+/// The connections of which it is found how often they fail where load ratios scatter, too.
+constexpr std::size_t kLookedAtMax = 40;
+
 /// Connections that fail in fewer cases are not named.
 constexpr double kShareMin = 1e-6;
 
 /// No larger factor is sought: a normal distribution of a large cv has too many strengths of zero.
 constexpr double kFactorMax = 1e9;
 
-/// The probability that a standard normal number is above z.
-double normal_above(double z) { return 0.5 * std::erfc(z / kRootOfTwo); }
-
-/// Weibull's exponent k for a coefficient of variation:
-/// cv^2 + 1 = Gamma(1 + 2/k) / Gamma(1 + 1/k)^2, which falls with k.
-double weibull_exponent(double cv) {
-  double low = 0.5;
-  double high = 2 / cv + 2;
-  for (int i = 0; i < 100; ++i) {
-    const double k = 0.5 * (low + high);
-    const double found = std::expm1(std::lgamma(1 + 2 / k) - 2 * std::lgamma(1 + 1 / k));
-    (found > cv * cv ? low : high) = k;
-  }
-  return 0.5 * (low + high);
-}
-
-/// What becomes of many connections whose load ratios are divided by one factor.
+/// What becomes of the connections of one robot whose load ratios are divided by one factor.
 class Product {
  public:
-  /// `ratios` are positive, the largest first.
-  Product(std::span<const double> ratios, const StrengthScatter& scatter)
-      : ratios_(ratios), own_(scatter.distribution, scatter.cv) {}
+  /// All load ratios change by `more`; those that are positive then are taken.
+  Product(std::span<const double> ratios, const StrengthScatter& scatter, double more) {
+    std::map<double, std::vector<double>> by_cv;
+    for (std::size_t i = 0; i < ratios.size(); ++i) {
+      if (ratios[i] + more > kLoadRatioTie) {
+        by_cv[scatter.cv_of(i)].push_back(ratios[i] + more);
+      }
+    }
+    for (auto& [cv, some] : by_cv) {
+      std::ranges::sort(some, std::ranges::greater());
+      largest_ = std::max(largest_, some.front());
+      groups_.push_back({ScatteredFactor(scatter.distribution, cv), std::move(some)});
+    }
+  }
 
   /// The logarithm of the probability that all connections hold if all strengths are multiplied
   /// by `factor`.
   double log_holds(double factor) const {
     double sum = 0;
+    for (const Group& group : groups_) {
+      sum += log_holds(group, factor);
+    }
+    return sum;
+  }
+
+  /// The largest load ratio; 0 if nothing is pulled.
+  double largest() const { return largest_; }
+
+ private:
+  /// Connections that scatter alike, by falling load ratio.
+  struct Group {
+    ScatteredFactor own;
+    std::vector<double> ratios;
+  };
+
+  static double log_holds(const Group& group, double factor) {
+    double sum = 0;
     double first = 0;
-    for (std::size_t i = 0; i < ratios_.size(); ++i) {
-      const double log_above = own_.log_above(ratios_[i] / factor);
+    const auto count = static_cast<double>(group.ratios.size());
+    for (std::size_t i = 0; i < group.ratios.size(); ++i) {
+      const double log_above = group.own.log_above(group.ratios[i] / factor);
       first = i == 0 ? log_above : first;
       sum += log_above;
-      const bool is_done = static_cast<double>(ratios_.size()) * log_above > kNegligible * first;
+      const bool is_done = count * log_above > kNegligible * first;
       if (is_done || !(sum > -std::numeric_limits<double>::max())) {
         break;
       }
@@ -77,11 +91,8 @@ class Product {
     return sum;
   }
 
-  const ScatteredFactor& own() const { return own_; }
-
- private:
-  std::span<const double> ratios_;
-  ScatteredFactor own_;
+  std::vector<Group> groups_;
+  double largest_ = 0;
 };
 
 /// The mean over G of what each(G) says; at G = 1 if there is none.
@@ -91,9 +102,11 @@ double mean_over_common(const StrengthScatter& scatter, const Each& each) {
     return each(1.0);
   }
   const ScatteredFactor common(scatter.distribution, scatter.common_cv);
-  const double step = std::min(kStepMax, kStepShare * scatter.cv / scatter.common_cv);
+  const double least =
+      scatter.own_cv.empty() ? scatter.cv : *std::ranges::min_element(scatter.own_cv);
+  const double step = std::min(kStepMax, kStepShare * least / scatter.common_cv);
   const int count = static_cast<int>(kNormalMax / step);
-  const double density = step / (kRootOfTwo * std::sqrt(std::acos(-1.0)));
+  const double density = step / std::sqrt(2 * std::acos(-1.0));
   double sum = 0;
   for (int i = -count; i <= count; ++i) {
     const double z = i * step;
@@ -102,55 +115,89 @@ double mean_over_common(const StrengthScatter& scatter, const Each& each) {
   return sum;
 }
 
-/// The positive load ratios after a change of all by `more`, the largest first, with the indices of
-/// their connections.
-std::vector<std::size_t> pulled(std::span<const double> ratios, double more) {
-  std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < ratios.size(); ++i) {
-    if (ratios[i] + more > kLoadRatioTie) {
-      order.push_back(i);
+/// All cases of one robot.
+class Cases {
+ public:
+  Cases(std::span<const LoadCase> cases, const StrengthScatter& scatter, double more = 0)
+      : scatter_(scatter) {
+    for (const LoadCase& one : cases) {
+      const bool is_known = one.state == CaseState::kKnown;
+      states_.push_back(one.state);
+      products_.emplace_back(
+          is_known ? std::span<const double>(one.ratios) : std::span<const double>(), scatter,
+          more);
     }
   }
-  std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t i) { return ratios[i]; });
-  return order;
-}
 
-std::vector<double> pulled_ratios(std::span<const double> ratios, double more) {
-  std::vector<double> some;
-  for (const std::size_t i : pulled(ratios, more)) {
-    some.push_back(ratios[i] + more);
+  /// The probability that all connections hold with strengths times `factor`, and that one fails;
+  /// what is not known counts as failing.
+  double holds(double factor) const {
+    return mean(
+        factor, [](double log_holds) { return std::exp(log_holds); }, 0);
   }
-  return some;
-}
 
-/// The probability that some connection fails with strengths times `factor`.
-double failing(std::span<const double> ratios, const StrengthScatter& scatter, double factor) {
-  const Product product(ratios, scatter);
-  return mean_over_common(
-      scatter, [&](double common) { return -std::expm1(product.log_holds(common * factor)); });
-}
+  double fails(double factor) const {
+    return mean(
+        factor, [](double log_holds) { return -std::expm1(log_holds); }, 1);
+  }
+
+  /// The probability that all hold, by case.
+  std::vector<double> each_holds(double unknown) const {
+    std::vector<double> list;
+    for (std::size_t i = 0; i < products_.size(); ++i) {
+      list.push_back(states_[i] == CaseState::kFallen ? 0
+                     : states_[i] == CaseState::kUnknown
+                         ? unknown
+                         : mean_over_common(scatter_, [&](double common) {
+                             return std::exp(products_[i].log_holds(common));
+                           }));
+    }
+    return list;
+  }
+
+  double largest() const {
+    double largest = 0;
+    for (const Product& product : products_) {
+      largest = std::max(largest, product.largest());
+    }
+    return largest;
+  }
+
+ private:
+  template <class Each>
+  double mean(double factor, const Each& each, double otherwise) const {
+    return mean_over_common(scatter_, [&](double common) {
+      double sum = 0;
+      for (std::size_t i = 0; i < products_.size(); ++i) {
+        sum += states_[i] == CaseState::kKnown ? each(products_[i].log_holds(common * factor))
+                                               : otherwise;
+      }
+      return sum / static_cast<double>(products_.size());
+    });
+  }
+
+  const StrengthScatter& scatter_;
+  std::vector<CaseState> states_;
+  std::vector<Product> products_;
+};
 
 /// The factor with which some connection fails with probability `fails`, by bisection.
-std::optional<double> strength_factor(std::span<const double> ratios,
-                                      const StrengthScatter& scatter, double fails) {
-  if (ratios.empty()) {
+std::optional<double> strength_factor(const Cases& cases, double fails) {
+  if (cases.largest() == 0 || cases.fails(kFactorMax) > fails) {
     return std::nullopt;
   }
-  double low = ratios.front();
-  while (failing(ratios, scatter, low) < fails) {
+  double low = cases.largest();
+  while (cases.fails(low) < fails) {
     low /= 2;
   }
   double high = 2 * low;
-  while (failing(ratios, scatter, high) > fails) {
-    if (high > kFactorMax) {
-      return std::nullopt;
-    }
+  while (cases.fails(high) > fails) {
     low = high;
     high *= 2;
   }
   while (high - low > kFactorDigits * high) {
     const double middle = 0.5 * (low + high);
-    (failing(ratios, scatter, middle) > fails ? low : high) = middle;
+    (cases.fails(middle) > fails ? low : high) = middle;
   }
   return high;
 }
@@ -173,106 +220,86 @@ LoadRange whole_range(const Assessment& assessment) {
   return range;
 }
 
+/// The connections that fail most often, by falling share. Of those that scatter alike the ones
+/// with the largest load ratio are looked at, of the first case that is known.
+std::vector<FailingConnection> likeliest(std::span<const LoadCase> cases,
+                                         const StrengthScatter& scatter, double fails) {
+  std::vector<FailingConnection> list;
+  const auto known = std::ranges::find(cases, CaseState::kKnown, &LoadCase::state);
+  if (known == cases.end() || fails <= 0) {
+    return list;
+  }
+  std::map<double, std::vector<std::size_t>> by_cv;
+  for (std::size_t i = 0; i < known->ratios.size(); ++i) {
+    if (known->ratios[i] > kLoadRatioTie) {
+      by_cv[scatter.cv_of(i)].push_back(i);
+    }
+  }
+  for (auto& [cv, some] : by_cv) {
+    std::ranges::stable_sort(some, std::ranges::greater(),
+                             [&](std::size_t i) { return known->ratios[i]; });
+    some.resize(std::min(some.size(), cases.size() > 1 ? kLookedAtMax : kLikeliestMax));
+    const ScatteredFactor own(scatter.distribution, cv);
+    for (const std::size_t i : some) {
+      const double alone = mean_over_common(scatter, [&](double common) {
+        double sum = 0;
+        for (const LoadCase& one : cases) {
+          sum += one.state == CaseState::kKnown ? own.below(one.ratios[i] / common) : 0;
+        }
+        return sum / static_cast<double>(cases.size());
+      });
+      list.push_back(
+          {.connection = i, .load_ratio = known->ratios[i], .share = clamped(alone / fails)});
+    }
+  }
+  std::ranges::stable_sort(list, std::ranges::greater(), &FailingConnection::share);
+  list.resize(std::min(list.size(), kLikeliestMax));
+  while (list.size() > 1 && list.back().share < kShareMin) {
+    list.pop_back();
+  }
+  return list;
+}
+
+/// The mean of probabilities of samples less or plus three times what it may be off. Samples come
+/// in pairs that are opposite to each other.
+double bound(const std::vector<double>& samples, double direction) {
+  const std::size_t count = samples.size() / 2;
+  double mean = 0;
+  double square = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double pair = (samples[2 * i] + samples[2 * i + 1]) / 2;
+    mean += pair / static_cast<double>(count);
+    square += pair * pair / static_cast<double>(count);
+  }
+  const double variance = std::max(0.0, square - mean * mean);
+  return clamped(mean + direction * 3 * std::sqrt(variance / static_cast<double>(count)));
+}
+
 }  // namespace
 
-const char* name(StrengthDistribution distribution) {
-  switch (distribution) {
-    case StrengthDistribution::kLognormal:
-      return "lognormal";
-    case StrengthDistribution::kNormal:
-      return "normal";
-    case StrengthDistribution::kWeibull:
-      break;
-  }
-  return "weibull";
-}
-
-std::optional<StrengthDistribution> find_strength_distribution(std::string_view name) {
-  for (const auto each : {StrengthDistribution::kLognormal, StrengthDistribution::kNormal,
-                          StrengthDistribution::kWeibull}) {
-    if (name == verdict::name(each)) {
-      return each;
-    }
-  }
-  return std::nullopt;
-}
-
-ScatteredFactor::ScatteredFactor(StrengthDistribution distribution, double cv)
-    : distribution_(distribution) {
-  switch (distribution) {
-    case StrengthDistribution::kLognormal:
-      spread_ = std::sqrt(std::log1p(cv * cv));
-      location_ = -0.5 * spread_ * spread_;
-      break;
-    case StrengthDistribution::kNormal:
-      spread_ = cv;
-      location_ = 1;
-      break;
-    case StrengthDistribution::kWeibull:
-      spread_ = weibull_exponent(cv);
-      location_ = std::exp(-std::lgamma(1 + 1 / spread_));
-      break;
-  }
-}
-
-ScatteredFactor::Tails ScatteredFactor::tails(double value) const {
-  if (!(value > 0)) {
-    return {};
-  }
-  if (distribution_ == StrengthDistribution::kWeibull) {
-    const double power = std::pow(value / location_, spread_);
-    return {.below = -std::expm1(-power), .above = std::exp(-power)};
-  }
-  const bool is_normal = distribution_ == StrengthDistribution::kNormal;
-  const double z = ((is_normal ? value : std::log(value)) - location_) / spread_;
-  return {.below = normal_above(-z), .above = normal_above(z)};
-}
-
-double ScatteredFactor::log_above(double value) const {
-  const Tails both = tails(value);
-  return both.below < 0.5 ? std::log1p(-both.below) : std::log(both.above);
-}
-
-double ScatteredFactor::at_normal(double z) const {
-  constexpr double kSmallest = std::numeric_limits<double>::min();
-  switch (distribution_) {
-    case StrengthDistribution::kLognormal:
-      return std::exp(location_ + spread_ * z);
-    case StrengthDistribution::kNormal:
-      return std::max(kSmallest, location_ + spread_ * z);
-    case StrengthDistribution::kWeibull:
-      break;
-  }
-  const double log_above = z < 0 ? std::log1p(-normal_above(-z)) : std::log(normal_above(z));
-  return std::max(kSmallest, location_ * std::pow(-log_above, 1 / spread_));
-}
-
-Reliability find_reliability(std::span<const double> load_ratios, const StrengthScatter& scatter) {
-  const std::vector<double> ratios = pulled_ratios(load_ratios, 0);
-  const Product product(ratios, scatter);
+Reliability find_reliability(std::span<const LoadCase> cases, const StrengthScatter& scatter) {
+  const Cases all(cases, scatter);
   Reliability found{.scatter = scatter};
-  found.fails = clamped(failing(ratios, scatter, 1));
-  found.holds = clamped(mean_over_common(
-      scatter, [&](double common) { return std::exp(product.log_holds(common)); }));
+  found.fails = clamped(all.fails(1));
+  found.holds = clamped(all.holds(1));
   found.holds_low = found.holds;
   found.holds_high = found.holds;
-  const std::vector<std::size_t> order = pulled(load_ratios, 0);
-  for (std::size_t i = 0; i < std::min(order.size(), kLikeliestMax) && found.fails > 0; ++i) {
-    const double alone = mean_over_common(
-        scatter, [&](double common) { return product.own().below(ratios[i] / common); });
-    const double share = clamped(alone / found.fails);
-    if (i > 0 && share < kShareMin) {
-      break;
-    }
-    found.likeliest.push_back({.connection = order[i], .load_ratio = ratios[i], .share = share});
+  if (cases.size() > 1) {
+    found.holds_low = std::min(found.holds, bound(all.each_holds(0), -1));
+    found.holds_high = std::max(found.holds, bound(all.each_holds(1), 1));
   }
-  found.strength_factor_99 = strength_factor(ratios, scatter, 0.01);
-  found.strength_factor_999 = strength_factor(ratios, scatter, 0.001);
+  found.likeliest = likeliest(cases, scatter, found.fails);
+  found.strength_factor_99 = strength_factor(all, 0.01);
+  found.strength_factor_999 = strength_factor(all, 0.001);
   return found;
 }
 
-std::optional<Reliability> find_reliability(const Assessment& assessment,
-                                            const StrengthScatter& scatter) {
+Reliability find_reliability(std::span<const double> load_ratios, const StrengthScatter& scatter) {
+  const LoadCase one{.ratios = {load_ratios.begin(), load_ratios.end()}};
+  return find_reliability(std::span(&one, 1), scatter);
+}
+
+std::optional<std::vector<double>> known_ratios(const Assessment& assessment) {
   const bool is_standing = known_stability(assessment) == std::optional(true);
   const bool is_solved = assessment.equilibrium.outcome == solver::Outcome::kSettled;
   if (!is_standing || !is_solved || assessment.whole) {
@@ -285,17 +312,35 @@ std::optional<Reliability> find_reliability(const Assessment& assessment,
     }
     ratios.push_back(connection.load_ratio);
   }
-  Reliability found = find_reliability(ratios, scatter);
+  return ratios;
+}
+
+std::optional<Reliability> find_reliability(const Assessment& assessment,
+                                            const StrengthScatter& scatter,
+                                            const SampledMasses& sampled) {
+  auto ratios = known_ratios(assessment);
+  if (!ratios) {
+    return std::nullopt;
+  }
+  const LoadCase one{.ratios = *std::move(ratios)};
+  const auto cases =
+      sampled.cases.empty() ? std::span(&one, 1) : std::span<const LoadCase>(sampled.cases);
+  Reliability found = find_reliability(cases, scatter);
+  found.sample_count = sampled.cases.size();
+  found.changed_count = sampled.changed_count;
   if (assessment.load_ratio_max) {
     const LoadRange range = whole_range(assessment);
     if (!std::isfinite(range.low) || !std::isfinite(range.high)) {
       return std::nullopt;
     }
-    const auto holds_with = [&](double more) {
-      return clamped(1 - failing(pulled_ratios(ratios, more), scatter, 1));
+    const double base = clamped(1 - Cases(std::span(&one, 1), scatter).fails(1));
+    const auto change_with = [&](double more) {
+      return clamped(1 - Cases(std::span(&one, 1), scatter, more).fails(1)) - base;
     };
-    found.holds_low = std::min(found.holds, holds_with(range.high - *assessment.load_ratio_max));
-    found.holds_high = std::max(found.holds, holds_with(range.low - *assessment.load_ratio_max));
+    found.holds_low = clamped(found.holds_low +
+                              std::min(0.0, change_with(range.high - *assessment.load_ratio_max)));
+    found.holds_high = clamped(found.holds_high +
+                               std::max(0.0, change_with(range.low - *assessment.load_ratio_max)));
   }
   return found;
 }

@@ -50,6 +50,32 @@ struct OrderRequest {
 /// io::make_spec() and plan::find_robot_order().
 base::Result<io::OrderReport> seek_order(const io::Document& target, const OrderRequest& request);
 
+/// The least factor of all strengths with which there is a safe order: the bottleneck of all ways
+/// from the start to the whole. It lies between `none`, with which it is proved that there is none,
+/// and `enough`, with which one was found, and they are apart by kNeededDigits at most unless time
+/// or undecided states ended the search.
+struct StrengthNeeded {
+  double none = 0;
+  std::optional<double> enough = {};  ///< None: no order was found with any factor.
+  bool is_certain = false;            ///< Whether nothing is left between the two.
+  std::size_t search_count = 0;
+  /// The order with `enough`, its load ratios those with the strengths as given; without one the
+  /// answer to the last search.
+  io::OrderReport report;
+};
+
+inline constexpr double kNeededDigits = 1e-4;
+
+/// Seeks it by searches with other strengths, all of them together within the time of the request.
+/// What is safe with weaker magnets is safe with stronger ones, so every search tells one side.
+/// Errors: those of seek_order().
+base::Result<StrengthNeeded> seek_strength_needed(const io::Document& target,
+                                                  const OrderRequest& request);
+
+/// A line for the end of the text of its order, and the member "strength_needed" of its report.
+std::string strength_needed_text(const StrengthNeeded& needed);
+std::string strength_needed_member(const StrengthNeeded& needed);
+
 /// The claims that a certificate has proved, and of which robot.
 struct ProvedOrder {
   std::string name;  ///< As the certificate says; may be empty.

@@ -50,7 +50,9 @@ struct StepsResult {
 /// step cannot be done; Error::where is its JSON pointer, the message names step and stage.
 base::Result<StepsResult> judge_steps(const StepsFile& file, const StepsOptions& options = {});
 
-void write_steps_json(std::ostream& out, const StepsFile& file, const StepsResult& result);
+/// `more` adds keys at the end of the report.
+void write_steps_json(std::ostream& out, const StepsFile& file, const StepsResult& result,
+                      const io::MoreKeys& more = {});
 std::string steps_text(const StepsFile& file, const StepsResult& result);
 std::string steps_svg(const StepsFile& file, const StepsResult& result,
                       const io::FigureOptions& figure = {});

@@ -73,7 +73,39 @@ void check_pair_lists_of(JsonReading& reading, const Connectors& connectors,
   }
 }
 
+/// Reads one of kScatterKeys.
+void read_scatter(JsonReading& reading, const std::string& key, const Json& value,
+                  const JsonPlace& place, Scatter& scatter) {
+  if (key == kScatterKeys[2]) {
+    const auto law = verdict::find_strength_distribution(reading.string(value, place));
+    if (!law) {
+      reading.refuse(value, place, "one of \"lognormal\", \"normal\", \"weibull\"");
+    }
+    scatter.distribution = law;
+    return;
+  }
+  const double cv = reading.number(value, place);
+  if (const auto fault = find_cv_fault(key, cv)) {
+    reading.fail(place, *fault);
+  }
+  (key == kScatterKeys[0] ? scatter.strength_cv : scatter.mass_cv) = cv;
+}
+
 }  // namespace
+
+std::optional<std::string> find_cv_fault(std::string_view key, double cv) {
+  const double most = key == kScatterKeys[0] ? verdict::kCvMax : verdict::kMassCvMax;
+  if (cv >= verdict::kCvMin && cv <= most) {
+    return std::nullopt;
+  }
+  return fmt::format(
+      "{}: expected a standard deviation over mean from {} to {}, such as 0.1 for 10 %, found {}",
+      key, verdict::kCvMin, most, cv);
+}
+
+bool is_scatter_key(std::string_view key) {
+  return std::ranges::find(kScatterKeys, key) != kScatterKeys.end();
+}
 
 void read_connector_parameter(JsonReading& reading, const std::string& key, const Json& value,
                               const JsonPlace& place, Connectors& connectors) {
@@ -113,7 +145,8 @@ std::size_t read_choice(JsonReading& reading, const Json& value, const JsonPlace
 }
 
 bool is_material_extension(std::string_view key) {
-  return key == kFootKey || std::ranges::find(kConnectorKeys, key) != kConnectorKeys.end();
+  return key == kFootKey || is_scatter_key(key) ||
+         std::ranges::find(kConnectorKeys, key) != kConnectorKeys.end();
 }
 
 void read_material_extension(JsonReading& reading, const std::string& key, const Json& value,
@@ -121,6 +154,8 @@ void read_material_extension(JsonReading& reading, const std::string& key, const
   Extension& extension = reading.document.extension;
   if (key == kFootKey) {
     extension.foot_mm = read_not_negative(reading, value, place);
+  } else if (is_scatter_key(key)) {
+    read_scatter(reading, key, value, place, extension.scatter);
   } else {
     read_connector_parameter(reading, key, value, place, extension.connectors);
   }
@@ -128,7 +163,7 @@ void read_material_extension(JsonReading& reading, const std::string& key, const
 
 KindEntry read_kind(JsonReading& reading, const std::string& name, const Json& value,
                     const JsonPlace& place) {
-  KindEntry kind{name, {}, {}};
+  KindEntry kind{name, {}, {}, {}};
   for (const auto& [key, member] : reading.members(value, place)) {
     const JsonPlace here = place.at(key);
     if (key == "mass_kg") {
@@ -141,6 +176,8 @@ KindEntry read_kind(JsonReading& reading, const std::string& name, const Json& v
           {key, Spread::kAll, {read_positive(reading, member, here)}});
     } else if (std::ranges::find(kConnectorKeys, key) != kConnectorKeys.end()) {
       read_connector_parameter(reading, key, member, here, kind.connectors);
+    } else if (std::ranges::find(kKindScatterKeys, key) != kKindScatterKeys.end()) {
+      read_scatter(reading, key, member, here, kind.scatter);
     } else {
       reading.note_unknown_key(here, kKindKeys);
     }

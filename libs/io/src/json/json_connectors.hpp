@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -24,6 +25,13 @@ KindEntry read_kind(JsonReading& reading, const std::string& name, const Json& v
 /// Reads one of kConnectorKeys.
 void read_connector_parameter(JsonReading& reading, const std::string& key, const Json& value,
                               const JsonPlace& place, Connectors& connectors);
+
+/// Whether a key of the material is one of kScatterKeys.
+bool is_scatter_key(std::string_view key);
+
+/// Says why strengths or masses cannot scatter so much or so little, if they cannot; `key` is one
+/// of kKindScatterKeys.
+std::optional<std::string> find_cv_fault(std::string_view key, double cv);
 
 /// A failure if an object of the material or a kind says the strength of a direction twice.
 void expect_one_strength(JsonReading& reading, const Json& value, const JsonPlace& place);

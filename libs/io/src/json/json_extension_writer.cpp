@@ -114,6 +114,19 @@ void add_connector_members(Items& members, const Connectors& connectors) {
   }
 }
 
+void add_scatter_members(Items& members, const Scatter& scatter) {
+  const auto add = [&](std::string_view key, const std::optional<double>& cv) {
+    if (cv) {
+      members.push_back(member(key, json_text(*cv)));
+    }
+  };
+  add(kScatterKeys[0], scatter.strength_cv);
+  add(kScatterKeys[1], scatter.mass_cv);
+  if (scatter.distribution) {
+    members.push_back(member(kScatterKeys[2], name_text(verdict::name(*scatter.distribution))));
+  }
+}
+
 void add_floor_and_gravity(Items& members, const Extension& extension) {
   if (extension.floor_friction) {
     members.push_back(
@@ -145,6 +158,7 @@ void add_kind_members(Items& members, const Extension& extension) {
       parameters.push_back(member("mass_kg", json_text(*kind.mass_kg)));
     }
     add_connector_members(parameters, kind.connectors);
+    add_scatter_members(parameters, kind.scatter);
     kinds.push_back(json_text(kind.name) + ": " + object(parameters));
   }
   if (!kinds.empty()) {
@@ -188,6 +202,7 @@ Items material_extension_members(const Extension& extension) {
   if (extension.foot_mm) {
     members.push_back(member(kFootKey, json_text(*extension.foot_mm)));
   }
+  add_scatter_members(members, extension.scatter);
   return members;
 }
 

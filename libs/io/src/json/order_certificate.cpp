@@ -280,7 +280,7 @@ std::string write_order_certificate(const Document& target,
   for (const auto& [state, judged] : certificate.closure.blocked) {
     blocked.push_back(blocked_text(state, judged, count));
   }
-  std::string structure = write_json(target);
+  std::string structure = write_json(with_allowed_strengths(target));
   structure.erase(structure.find_last_not_of('\n') + 1);
   const bool is_growing = certificate.closure.sense == plan::Sense::kGrowing;
   const auto& source = task.rule.source;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numeric>
 #include <set>
+#include <utility>
 
 #include "holdfast/io/document.hpp"
 #include "holdfast/io/lattice_names.hpp"
@@ -301,7 +302,42 @@ base::Error with_other_lattice(base::Error error, const Document& document) {
   return error;
 }
 
+Document with_allowed_strengths(Document document) {
+  const double factor = std::exchange(document.safety_factor, 1);
+  if (factor == 1) {
+    return document;
+  }
+  const auto divide = [factor](Connectors& connectors) {
+    for (ConnectorParameter& parameter : connectors.parameters) {
+      if (is_strength_key(parameter.key)) {
+        for (std::optional<double>& value : parameter.values) {
+          value = value ? std::optional(*value / factor) : std::nullopt;
+        }
+      }
+    }
+  };
+  Extension& extension = document.extension;
+  document.material.strength_vertical_n /= factor;
+  document.material.strength_lateral_n /= factor;
+  // The robot's figures become the document's own, before those that override them.
+  Connectors all = robot_connectors(extension.robot);
+  all.parameters.insert(all.parameters.end(), extension.connectors.parameters.begin(),
+                        extension.connectors.parameters.end());
+  extension.connectors.parameters = std::move(all.parameters);
+  divide(extension.connectors);
+  for (KindEntry& kind : extension.kinds) {
+    divide(kind.connectors);
+  }
+  for (ConnectionEntry& connection : extension.connections) {
+    divide(connection.connectors);
+  }
+  return document;
+}
+
 base::Result<model::RobotSpec> make_spec(const Document& document) {
+  if (document.safety_factor != 1) {
+    return make_spec(with_allowed_strengths(document));
+  }
   if (auto error = find_fault(document)) {
     return *std::move(error);
   }
@@ -363,6 +399,9 @@ std::string step_list(const Document& document) {
 }
 
 base::Result<Sequence> make_sequence(const Document& document) {
+  if (document.safety_factor != 1) {
+    return make_sequence(with_allowed_strengths(document));
+  }
   if (auto error = find_fault(document)) {
     return *std::move(error);
   }

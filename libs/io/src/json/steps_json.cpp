@@ -78,7 +78,8 @@ void write_stage_id(JsonStream& json, std::string_view key,
   json.end_object();
 }
 
-void write_steps_json(std::ostream& out, const StepsEntry& entry) {
+void write_steps_json(std::ostream& out, const StepsEntry& entry,
+                      const std::function<void(JsonStream&)>& more) {
   const plan::SequenceJudgement& judged = *entry.judgement;
   std::string text;
   JsonStream json(text);
@@ -109,6 +110,9 @@ void write_steps_json(std::ostream& out, const StepsEntry& entry) {
   }
   json.end_array();
   json.member("seconds", entry.seconds);
+  if (more) {
+    more(json);
+  }
   json.end_object();
   out << text;
 }

@@ -152,7 +152,7 @@ base::Result<plan::MoveTask> move_task(const Document& start, const Document& ta
   return plan::MoveTask{.start = std::move(from).value(), .target = std::move(to).value()};
 }
 
-std::string move_json(const MoveReport& report) {
+std::string move_json(const MoveReport& report, const std::vector<std::string>& more) {
   const plan::MovePlan& plan = report.plan;
   const StageCount stages = count_stages(plan);
   Items items = report_head({.command = "move",
@@ -169,6 +169,7 @@ std::string move_json(const MoveReport& report) {
                        member("seconds", json_text(report.seconds)),
                        member("certificate", certificate_text(plan))};
   items.insert(items.end(), found.begin(), found.end());
+  items.insert(items.end(), more.begin(), more.end());
   return lines('{', items, '}', 0) + "\n";
 }
 

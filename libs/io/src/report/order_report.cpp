@@ -141,7 +141,7 @@ const char* name(OrderOutcome outcome) {
   return "not-found";
 }
 
-std::string order_json(const OrderReport& report) {
+std::string order_json(const OrderReport& report, const std::vector<std::string>& more) {
   const plan::Order& order = report.result.order;
   std::string certificate = "null";
   if (report.result.certificate) {
@@ -163,6 +163,7 @@ std::string order_json(const OrderReport& report) {
                        member("help", help_text(report)),
                        member("certificate", certificate)};
   items.insert(items.end(), found.begin(), found.end());
+  items.insert(items.end(), more.begin(), more.end());
   return lines('{', items, '}', 0) + "\n";
 }
 

@@ -71,6 +71,8 @@ struct Document {
   std::optional<KnownAnswer> known_answer;
   Extension extension;  ///< What only version 2 of the JSON format can say.
   Origin origin;
+  /// What every strength is divided by in robots that are made of the document; no file says it.
+  double safety_factor = 1;
 
   // VisibleSim's own, without meaning for mechanics.
   Attributes parameters;         ///< Of <parameters>: nofIterations, preconditioner, globalBeta...
@@ -136,6 +138,8 @@ struct ReadOptions {
   std::string ending = {};
   /// The edge of a cell in the unit of a mesh that is filled with modules; a mesh needs it.
   std::optional<double> mesh_pitch = {};
+  /// Document::safety_factor, with a warning if it is not 1; heeded by read_document().
+  double safety_factor = 1;
 };
 
 /// Takes a number of the material that somebody states.
@@ -194,6 +198,10 @@ struct Sequence {
   /// one there.
   std::vector<model::Step> steps;
 };
+
+/// The document whose strengths are those that its safety factor leaves, which is then 1: limits of
+/// connections by tension, shear and torsion, of the material, the robot, kinds and connections.
+Document with_allowed_strengths(Document document);
 
 /// Returns the index in Document::steps of the first step of make_sequence(): 1 where nothing is
 /// planned.

@@ -14,6 +14,7 @@
 #include "holdfast/io/element.hpp"
 #include "holdfast/model/robot.hpp"
 #include "holdfast/model/step.hpp"
+#include "holdfast/verdict/scatter.hpp"
 
 /// Stores what a structure can say from version 2 of the JSON format on: other lattices than the
 /// cubic one, other environments than a floor, other loads than weight, several kinds of modules,
@@ -45,11 +46,23 @@ struct Connectors {
   friend bool operator==(const Connectors&, const Connectors&) = default;
 };
 
+/// What a file says of how strengths and masses scatter: standard deviation over mean, from
+/// verdict::kCvMin to verdict::kCvMax, or to verdict::kMassCvMax. None where it says nothing.
+struct Scatter {
+  std::optional<double> strength_cv;
+  std::optional<double> mass_cv;
+  /// The law of all strengths of a file; kinds have none of their own.
+  std::optional<verdict::StrengthDistribution> distribution;
+
+  friend bool operator==(const Scatter&, const Scatter&) = default;
+};
+
 /// A kind of modules, by what makes it differ from the material.
 struct KindEntry {
   std::string name;
   std::optional<double> mass_kg;
   Connectors connectors;
+  Scatter scatter = {};
 
   friend bool operator==(const KindEntry&, const KindEntry&) = default;
 };
@@ -82,6 +95,7 @@ struct Extension {
   std::optional<double> floor_friction;               ///< None: no slip.
   std::optional<std::array<double, 3>> gravity_m_s2;  ///< None: Material::gravity_m_s2, downwards.
   Connectors connectors;                              ///< Of all modules.
+  Scatter scatter;                                    ///< Of all modules.
   std::optional<double> foot_mm;  ///< Width of the facets of modules that are no cubes.
   std::vector<KindEntry> kinds;
   std::vector<OwnParameters> own;     ///< By ascending step, then module.

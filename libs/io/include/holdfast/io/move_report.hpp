@@ -4,6 +4,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "holdfast/base/result.hpp"
 #include "holdfast/io/document.hpp"
@@ -29,8 +30,8 @@ base::Result<model::RobotSpec> standing_spec(const Document& document, std::stri
 /// each of them.
 base::Result<plan::MoveTask> move_task(const Document& start, const Document& target);
 
-/// The report in JSON; see docs/formats.md.
-std::string move_json(const MoveReport& report);
+/// The report in JSON; see docs/formats.md. `more` are further members, "key": value.
+std::string move_json(const MoveReport& report, const std::vector<std::string>& more = {});
 
 /// Lines for people; a line feed at the end.
 std::string move_text(const MoveReport& report);

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "holdfast/io/document.hpp"
 #include "holdfast/io/report_head.hpp"
@@ -25,8 +26,8 @@ struct OrderReport {
   bool is_interrupted = false;  ///< The search was ended from outside.
 };
 
-/// The report in JSON; see docs/formats.md.
-std::string order_json(const OrderReport& report);
+/// The report in JSON; see docs/formats.md. `more` are further members, "key": value.
+std::string order_json(const OrderReport& report, const std::vector<std::string>& more = {});
 
 std::string order_text(const OrderReport& report);
 

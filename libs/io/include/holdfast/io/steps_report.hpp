@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <ostream>
 #include <span>
@@ -29,7 +30,9 @@ struct StepsEntry {
 };
 
 /// The JSON report, one object without a line feed behind it; keys are in docs/formats.md.
-void write_steps_json(std::ostream& out, const StepsEntry& entry);
+/// `more` adds keys at its end.
+void write_steps_json(std::ostream& out, const StepsEntry& entry,
+                      const std::function<void(JsonStream&)>& more = {});
 
 /// Writes a member: a stage of a step as {"step", "stage"}, or null.
 void write_stage_id(JsonStream& json, std::string_view key, const std::optional<plan::StageId>& id);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "holdfast/reliability.hpp"
 
 namespace holdfast {
@@ -18,13 +20,30 @@ constexpr double kSameProbability = 5e-4;
 constexpr const char* kUnknown =
     "not known, as the robot is not known to stay where it is or has no loads";
 
+/// The largest cv of the masses; 0 if none scatters.
+double mass_cv(const verdict::StrengthScatter& scatter) {
+  return scatter.mass_cv.empty() ? 0 : *std::ranges::max_element(scatter.mass_cv);
+}
+
 std::string scatter_text(const verdict::StrengthScatter& scatter) {
-  std::string text = fmt::format("strengths +-{:.4g} %", 100 * scatter.cv);
+  const bool is_uniform = scatter.own_cv.empty();
+  std::string text =
+      scatter.cv > verdict::kCvMin
+          ? fmt::format("strengths {}+-{:.4g} %", is_uniform ? "" : "up to ", 100 * scatter.cv)
+          : std::string("strengths as given");
   if (scatter.common_cv > 0) {
     text += fmt::format(" each, +-{:.4g} % together", 100 * scatter.common_cv);
   }
   if (scatter.distribution != verdict::StrengthDistribution::kLognormal) {
     text += fmt::format(", {}", name(scatter.distribution));
+  }
+  if (const double masses = mass_cv(scatter); masses > 0) {
+    text += fmt::format(", masses {}+-{:.4g} %",
+                        std::ranges::count(scatter.mass_cv, masses) ==
+                                static_cast<std::ptrdiff_t>(scatter.mass_cv.size())
+                            ? ""
+                            : "up to ",
+                        100 * masses);
   }
   return text;
 }
@@ -39,8 +58,8 @@ std::string probability_text(const Reliability& found) {
                          : fmt::format("holds with probability {:.3g}", found.holds);
   text += fmt::format(" ({})", scatter_text(found.scatter));
   if (found.holds_high - found.holds_low > kSameProbability) {
-    text += fmt::format(", from {:.3g} to {:.3g} within what the loads may be off", found.holds_low,
-                        found.holds_high);
+    text += fmt::format(", from {:.3g} to {:.3g} within what {} may be off", found.holds_low,
+                        found.holds_high, found.sample_count > 0 ? "samples" : "the loads");
   }
   return text;
 }
@@ -50,11 +69,6 @@ std::string factor_text(const std::optional<double>& factor) {
 }
 
 }  // namespace
-
-std::optional<Reliability> find_reliability(const CheckResult& result,
-                                            const verdict::StrengthScatter& scatter) {
-  return verdict::find_reliability(result.assessment, scatter);
-}
 
 std::string reliability_text(const model::Robot& robot,
                              const std::optional<Reliability>& reliability) {
@@ -75,7 +89,11 @@ std::string reliability_text(const model::Robot& robot,
                           100 * first.share)) +
          line("", fmt::format("for 99 % {} the strengths, for 99.9 % {}",
                               factor_text(found.strength_factor_99),
-                              factor_text(found.strength_factor_999)));
+                              factor_text(found.strength_factor_999))) +
+         (found.changed_count == 0
+              ? std::string()
+              : line("", fmt::format("facets are in other states in {} of {} samples of masses",
+                                     found.changed_count, found.sample_count)));
 }
 
 void write_reliability_member(io::JsonStream& json, const model::Robot& robot,
@@ -92,6 +110,7 @@ void write_reliability_member(io::JsonStream& json, const model::Robot& robot,
   json.member("probability_high", of(&Reliability::holds_high));
   json.member("strength_cv", scatter.cv);
   json.member("common_cv", scatter.common_cv);
+  json.member("mass_cv", mass_cv(scatter));
   json.member("distribution", name(scatter.distribution));
   json.key("likeliest");
   json.begin_array();
@@ -106,6 +125,8 @@ void write_reliability_member(io::JsonStream& json, const model::Robot& robot,
     json.end_object();
   }
   json.end_array();
+  json.member("samples", reliability ? reliability->sample_count : 0);
+  json.member("samples_with_other_states", reliability ? reliability->changed_count : 0);
   json.member("strength_factor_99", reliability ? reliability->strength_factor_99 : std::nullopt);
   json.member("strength_factor_999", reliability ? reliability->strength_factor_999 : std::nullopt);
   json.end_object();

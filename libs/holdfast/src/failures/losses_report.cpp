@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include "failures/losses_words.hpp"
 #include "holdfast/base/check.hpp"
 #include "holdfast/losses.hpp"
 
@@ -16,19 +17,6 @@ using verdict::Verdict;
 
 /// People get no more lines of losses than this; a JSON report has all.
 constexpr std::size_t kShownMax = 10;
-
-std::string words(const Loss& loss) {
-  const std::string cell = model::text(loss.cells[0]);
-  switch (loss.kind) {
-    case LossKind::kConnection:
-      return cell + "-" + model::text(loss.cells[1]);
-    case LossKind::kModule:
-      return cell;
-    case LossKind::kFoot:
-      break;
-  }
-  return (loss.direction ? "a foot of " : "what fixes ") + cell;
-}
 
 std::string consequence(const LossAnswer& answer) {
   if (answer.fallen_count > 0) {
@@ -104,9 +92,20 @@ std::string headline(const LossReport& report) {
 
 }  // namespace
 
-LossReport lose_one(const Structure& structure, const LoseOneOptions& options) {
-  const auto spec = io::make_spec(structure.document);
-  HOLDFAST_CHECK(spec.has_value());  // The structure's robot was made of it.
+std::string loss_words(const plan::Loss& loss) {
+  const std::string cell = model::text(loss.cells[0]);
+  switch (loss.kind) {
+    case LossKind::kConnection:
+      return cell + "-" + model::text(loss.cells[1]);
+    case LossKind::kModule:
+      return cell;
+    case LossKind::kFoot:
+      break;
+  }
+  return (loss.direction ? "a foot of " : "what fixes ") + cell;
+}
+
+plan::LossOptions loss_options(const LoseOneOptions& options) {
   plan::LossOptions how;
   how.kinds = options.kinds;
   how.seconds_max = options.seconds_max;
@@ -114,7 +113,13 @@ LossReport lose_one(const Structure& structure, const LoseOneOptions& options) {
   how.equilibrium.memory_bytes_max = options.check.memory_bytes_max;
   how.equilibrium.is_bonded = options.check.is_bonded;
   how.equilibrium.thread_count = options.check.thread_count;
-  return plan::lose_each(spec.value(), how);
+  return how;
+}
+
+LossReport lose_one(const Structure& structure, const LoseOneOptions& options) {
+  const auto spec = io::make_spec(structure.document);
+  HOLDFAST_CHECK(spec.has_value());  // The structure's robot was made of it.
+  return plan::lose_each(spec.value(), loss_options(options));
 }
 
 std::string lose_one_text(const LossReport& report) {
@@ -124,7 +129,8 @@ std::string lose_one_text(const LossReport& report) {
   };
   add(headline(report));
   for (std::size_t i = 0; i < std::min(report.fatal.size(), kShownMax); ++i) {
-    add(fmt::format("without {}: {}", words(report.fatal[i].loss), consequence(report.fatal[i])));
+    add(fmt::format("without {}: {}", loss_words(report.fatal[i].loss),
+                    consequence(report.fatal[i])));
   }
   if (report.fatal.size() > kShownMax) {
     add(fmt::format("(and {} more)", report.fatal.size() - kShownMax));
@@ -132,12 +138,13 @@ std::string lose_one_text(const LossReport& report) {
   if (!report.undecided.empty()) {
     add(fmt::format("{} of the losses {} undecided, the first that of {}", report.undecided.size(),
                     report.undecided.size() == 1 ? "is" : "are",
-                    words(report.undecided.front().loss)));
+                    loss_words(report.undecided.front().loss)));
   }
   if (report.worst) {
     add(fmt::format("where all is held, the load ratio is {} {}, without {}",
                     report.worst->is_bound ? "below" : "at most",
-                    io::beside_one(*report.worst->load_ratio_max, 4), words(report.worst->loss)));
+                    io::beside_one(*report.worst->load_ratio_max, 4),
+                    loss_words(report.worst->loss)));
   }
   return text;
 }

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#include "plan_failure_options.hpp"
+
+namespace holdfast::cli {
+
+void add_plan_failure_options(CLI::App& command, PlanFailureOptions& options) {
+  add_scatter_options(command, options.scatter);
+  add_lose_one_options(command, options.lose_one);
+}
+
+base::Result<PlanFailureAnswer> find_plan_failures(const io::Document& document,
+                                                   const PlanFailureOptions& options,
+                                                   int thread_count, Progress& progress) {
+  PlanFailureAnswer answer;
+  if (!options.is_wanted()) {
+    return answer;
+  }
+  PlanFailuresWish wish{
+      .is_scatter_wanted = options.scatter.is_wanted(),
+      .scatter = read_scatter(options.scatter),
+      .probability = options.scatter.probability,
+      .is_lose_one_wanted = options.lose_one.is_wanted,
+      .lose_one = lose_one_options(options.lose_one, {.thread_count = thread_count})};
+  wish.progress = [&progress](std::size_t step) {
+    progress.show([&] { return fmt::format("{} looked at", host::counted(step, "step")); });
+  };
+  const auto found = holdfast::find_plan_failures(document, wish);
+  if (!found) {
+    return found.error();
+  }
+  answer.text = plan_failures_text(wish, found.value());
+  answer.members = [wish, report = found.value()](io::JsonStream& json) {
+    write_plan_failures_members(json, wish, report);
+  };
+  io::JsonStream json(answer.member_text, io::JsonStream::Layout::kLine);
+  json.begin_object();
+  answer.members(json);
+  json.end_object();
+  answer.member_text = answer.member_text.substr(1, answer.member_text.size() - 2);
+  answer.exit_code = found.value().fails()          ? kExitUnsafe
+                     : found.value().is_uncertain() ? kExitUndecided
+                                                    : kExitSafe;
+  if (options.scatter.probability <= 0 && !found.value().first_fatal &&
+      !found.value().first_undecided) {
+    answer.exit_code = kExitSafe;
+  }
+  return answer;
+}
+
+int worse(int plan_code, const PlanFailureAnswer& answer) {
+  return plan_code == kExitSafe ? answer.exit_code : plan_code;
+}
+
+void add_safety_factor(CLI::App& command, io::ReadOptions& reading) {
+  command
+      .add_option("--safety-factor,--margin", reading.safety_factor,
+                  "Divide all strengths by this: safe is what would be safe under all loads times "
+                  "it")
+      ->type_name("FACTOR")
+      ->check(number_between(1.0, 1000.0));
+}
+
+}  // namespace holdfast::cli

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "holdfast/losses.hpp"
+#include "holdfast/plan/sequence.hpp"
+#include "holdfast/reliability.hpp"
+
+/// How sure is a plan, and does it hold whatever single part is lost? The questions of
+/// reliability.hpp and losses.hpp, asked of every stage of every step.
+///
+///     const auto found = holdfast::find_plan_failures(document, {.scatter = wish, .probability =
+///     0.99}); if (found && found.value().first_below) { ... step and stage ... }
+namespace holdfast {
+
+struct PlanFailuresWish {
+  bool is_scatter_wanted = false;
+  ScatterWish scatter = {};
+  double probability = 0;  ///< Stages that hold with less are named; 0: none is.
+  bool is_lose_one_wanted = false;
+  LoseOneOptions lose_one = {};  ///< Its `check` is how stages are checked; the time is of each.
+  std::function<void(std::size_t step)> progress = {};
+};
+
+/// The answer over all stages. Stages are robots by themselves: that a connection held before says
+/// nothing of it later. The connection by which a moving group hangs on its carrier counts among
+/// those that may fail by scatter, and is not taken away by --lose-one.
+struct PlanFailures {
+  std::size_t robot_count = 0;  ///< Robots that were looked at: stages, scenes, pieces.
+  /// The least probability with which a stage holds, and which one; none where one is not known.
+  std::optional<double> probability_min = {};
+  std::optional<plan::StageId> least = {};
+  std::optional<plan::StageId> first_below = {};      ///< That holds with less than asked for,
+  std::optional<plan::StageId> first_unknown = {};    ///< or may.
+  std::optional<plan::StageId> first_fatal = {};      ///< That a single loss brings down,
+  std::optional<plan::LossAnswer> fatal = {};         ///< which is this one,
+  std::optional<plan::StageId> first_undecided = {};  ///< or may.
+
+  /// Whether anything that was asked for does not hold, and whether that is not certain.
+  bool fails() const { return first_below || first_fatal; }
+
+  bool is_uncertain() const { return !fails() && (first_unknown || first_undecided); }
+};
+
+/// Looks at every stage of the steps of a document. Errors: as of io::make_sequence() and of steps
+/// that cannot be done; nothing scatters.
+base::Result<PlanFailures> find_plan_failures(const io::Document& document,
+                                              const PlanFailuresWish& wish);
+
+/// Lines for the end of a plan's report, and the members "reliability" and "lose_one" that were
+/// asked for.
+std::string plan_failures_text(const PlanFailuresWish& wish, const PlanFailures& found);
+void write_plan_failures_members(io::JsonStream& json, const PlanFailuresWish& wish,
+                                 const PlanFailures& found);
+
+}  // namespace holdfast
