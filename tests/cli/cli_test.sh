@@ -367,6 +367,10 @@ expect_usage "^holdfast check: there is no option '--jsn'; did you mean '--json'
   check a --jsn b
 expect_usage "^holdfast check: there is no option '--x'\$" check a --x=1
 expect_usage "^holdfast: there is no option '--versoin'; did you mean '--version'" --versoin
+for command in move next order steps; do
+  expect_usage "^holdfast $command: $command cannot take --deformed: it judges states by linear" \
+    "$command" a --deformed
+done
 expect_usage "^holdfast next: the argument 'b' is one too many, expected FILE\$" next a b
 expect_usage "^holdfast move: the argument 'c' is one too many, expected FROM and TO\$" move a b c
 expect_usage "^holdfast check: there is no option '--hlep'; did you mean '--help'" check --hlep

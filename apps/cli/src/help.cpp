@@ -7,7 +7,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <regex>
+#include <string_view>
 
 #include "holdfast/holdfast.hpp"
 
@@ -173,11 +175,22 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
+bool judges_many(const CLI::App& command) {
+  constexpr std::array<std::string_view, 4> kNames = {"move", "next", "order", "steps"};
+  return std::ranges::find(kNames, command.get_name()) != kNames.end();
+}
+
 /// What is said of an option that a command does not have; empty if it has all that are given.
 std::string unknown_option(const CLI::App& command) {
   for (const std::string& argument : command.remaining()) {
     if (argument.size() > 1 && argument.starts_with('-')) {
       const std::string name = argument.substr(0, argument.find('='));
+      if (name == "--deformed" && judges_many(command)) {
+        return fmt::format(
+            "{} cannot take --deformed: it judges states by linear theory, and calls none safe for "
+            "which that does not suffice; holdfast check --deformed judges one robot",
+            command.get_name());
+      }
       return fmt::format("there is no option '{}'{}", io::one_line(name),
                          did_you_mean(name, option_names(command)));
     }

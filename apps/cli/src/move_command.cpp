@@ -118,9 +118,6 @@ base::Result<io::Document> read(const std::string& file, std::string_view which,
   if (const auto spec = io::standing_spec(found.value().document, which); !spec) {
     return spec.error();
   }
-  if (which == "the robot") {
-    print_linear_note(found.value().document, file);
-  }
   return std::move(found).value().document;
 }
 

@@ -58,7 +58,6 @@ int run(const NextArguments& options) {
   if (!structure) {
     return fail(structure.error(), options.file);
   }
-  print_linear_note(structure.value().document, options.file);
   Progress progress(options.is_quiet);
   const CheckOptions check_options = {
       .is_bonded = options.is_bonded,

@@ -183,7 +183,6 @@ int run(const OrderArguments& options) {
   if (!read) {
     return fail(read.error(), options.target);
   }
-  print_linear_note(read.value().document, options.target);
   Progress progress(options.is_quiet);
   OrderRequest request = request_of(options, progress);
   if (!options.start.empty()) {

@@ -99,12 +99,6 @@ base::Result<io::ReadDocument> read_with_notes(const std::string& file, const Re
   return read;
 }
 
-void print_linear_note(const io::Document& document, const std::string& file) {
-  if (const auto note = linear_note(document)) {
-    print_notes({&*note, 1}, file);
-  }
-}
-
 base::Result<Structure> load_with_notes(const std::string& file, const Reading& reading,
                                         int thread_count) {
   auto loaded = load_file(file, thread_count, reading);

@@ -29,9 +29,6 @@ std::vector<io::GivenOption> given_options(const CLI::App& command);
 /// Reads a document and prints its notes.
 base::Result<io::ReadDocument> read_with_notes(const std::string& file, const Reading& reading);
 
-/// Prints the note that many states are judged by linear theory, where it matters.
-void print_linear_note(const io::Document& document, const std::string& file);
-
 /// Reads a structure and prints its notes. 0 threads: as many as the machine has cores.
 base::Result<Structure> load_with_notes(const std::string& file, const Reading& reading,
                                         int thread_count = 0);

@@ -183,14 +183,6 @@ limit::LimitLoad find_limit(const model::Robot& robot, const verdict::Assessment
 
 }  // namespace
 
-std::optional<std::string> linear_note(const io::Document& document) {
-  return io::is_modulus_stated(document)
-             ? std::optional<std::string>(
-                   "states are judged by linear theory; whether it suffices for one of them "
-                   "holdfast check says")
-             : std::nullopt;
-}
-
 CheckResult check(const model::Robot& robot, const CheckOptions& options) {
   using solver::SecondOrderWish;
   const auto start = std::chrono::steady_clock::now();

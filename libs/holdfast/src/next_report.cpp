@@ -22,6 +22,9 @@ void write_candidate(io::JsonStream& json, const Trial& trial) {
   json.member("verdict", verdict::name(trial.verdict));
   json.member("load_ratio_max", trial.load_ratio_max);
   json.member("margin_mm", trial.margin_mm);
+  if (trial.is_bent) {
+    json.member("reason", "second_order");
+  }
   json.end_object();
 }
 
@@ -84,6 +87,9 @@ std::string next_text(const Structure& structure, const NextResult& result,
   }
   if (list.size() < result.candidates.size()) {
     text += fmt::format("  ... and {} more\n", result.candidates.size() - list.size());
+  }
+  if (std::ranges::any_of(list, &Trial::is_bent)) {
+    text += "  undecided as linear theory does not suffice there: ask holdfast check --deformed\n";
   }
   return text;
 }

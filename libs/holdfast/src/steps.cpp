@@ -39,9 +39,6 @@ base::Result<StepsFile> load_steps(const std::filesystem::path& path,
                        .message = "the structure has no steps; holdfast check judges it as it is",
                        .where = io::step_list(document)};
   }
-  if (auto note = linear_note(document)) {
-    warnings.push_back(*std::move(note));
-  }
   std::string name = document.name.empty() ? path.stem().string() : document.name;
   return StepsFile{.name = std::move(name),
                    .document = std::move(document),

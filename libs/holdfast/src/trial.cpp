@@ -25,7 +25,8 @@ Trial trial_of(const plan::Candidate& candidate) {
           .is_robot = candidate.is_robot,
           .verdict = candidate.judgement.verdict,
           .load_ratio_max = candidate.judgement.load_ratio_max,
-          .margin_mm = candidate.judgement.margin_mm};
+          .margin_mm = candidate.judgement.margin_mm,
+          .is_bent = candidate.judgement.is_bent};
 }
 
 std::vector<Trial> trials_of(const std::vector<plan::Candidate>& candidates) {

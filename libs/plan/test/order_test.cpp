@@ -405,7 +405,7 @@ TEST(RobotOrder, has_every_state_on_its_way_solved_if_it_is_to_be_exact) {
 }
 
 /// A slender column of w x w cubes with arms near its top, so strong that nothing breaks, and so
-/// soft that bending takes its centre of mass `share` of the way to the edge.
+/// heavy that bending takes its centre of mass `share` of the way to the edge.
 model::RobotSpec soft_column(std::uint64_t seed, int height, double share) {
   base::Rng rng(seed);
   const int width = 1 + static_cast<int>(rng.below(2));
@@ -429,9 +429,11 @@ model::RobotSpec soft_column(std::uint64_t seed, int height, double share) {
   spec.material.strength_lateral_n *= 1e3;
   const auto whole = verdict::assess(model::Robot::create(spec).value(), {.thread_count = 1});
   if (whole.lean &&
-      whole.lean->shift_mm > 1e-6) {  // Displacements go with 1 / E as long as all feet stand.
-    spec.material.elastic_modulus_mpa *=
-        whole.lean->shift_mm / (share * *whole.simplified.margin_mm);
+      whole.lean->shift_mm > 1e-6) {  // Displacements go with the mass as long as all feet stand.
+    const double factor = share * *whole.simplified.margin_mm / whole.lean->shift_mm;
+    spec.material.mass_kg *= factor;
+    spec.material.strength_vertical_n *= factor;
+    spec.material.strength_lateral_n *= factor;
   }
   return spec;
 }

@@ -172,10 +172,6 @@ base::Result<io::Document> generate(std::string_view family, std::size_t size);
 /// The name of each family and the meaning of its size, in the order of their list.
 std::vector<std::pair<std::string_view, std::string_view>> family_list();
 
-/// The note of those who judge many states by linear theory alone, where the structure states its
-/// elastic modulus, so that check() would ask whether that suffices; none where it does not.
-std::optional<std::string> linear_note(const io::Document& document);
-
 CheckResult check(const model::Robot& robot, const CheckOptions& options = {});
 
 /// Checks the structure's robot.

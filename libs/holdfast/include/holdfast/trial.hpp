@@ -60,6 +60,8 @@ struct Trial {
   /// The margin of verdict::RigidBody in mm: negative for a robot that topples, none for one that
   /// is fixed.
   std::optional<double> margin_mm = {};
+  /// Whether it is undecided as linear theory does not suffice (verdict::ReasonCode::kSecondOrder).
+  bool is_bent = false;
 };
 
 /// Tries cells of one robot, as often as it is asked: what was prepared for the first eight cells

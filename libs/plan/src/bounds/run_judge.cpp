@@ -164,16 +164,17 @@ RunJudge::RunJudge(const model::RobotSpec& spec, const model::Robot& target, int
 
 verdict::Assessment RunJudge::assess(const ElementSet& state) const {
   const auto part = model::Robot::create(part_of(spec_, state), 1);
-  return part ? plan::assess(part.value(), {.thread_count = 1, .has_rigid_figures = false})
+  const solver::EquilibriumOptions options{.thread_count = 1, .has_rigid_figures = false};
+  return part ? plan::assess(part.value(), as_checked(part.value(), options))
               : verdict::Assessment{};
 }
 
 /// Judges states one after another until one is not safe: those that can be certified so by what is
-/// known of the last that was solved, all others solved.
+/// known of the last that was solved, all others solved. No bound knows what bending does.
 void RunJudge::judge_piece(Piece& piece, Sense sense, FollowingWorth& worth,
                            const std::function<bool()>& is_late) const {
   std::optional<Certifier> certifier;
-  if (sense == Sense::kGrowing) {
+  if (sense == Sense::kGrowing && !target_.is_modulus_stated()) {
     certifier.emplace(*this, piece.begin, worth);
   }
   ElementSet state = piece.begin;
@@ -217,7 +218,7 @@ std::vector<RunJudge::Piece> RunJudge::pieces_of(const ElementSet& state, Sense 
 std::vector<Judgement> RunJudge::judge(const ElementSet& state, Sense sense,
                                        std::span<const Element> run,
                                        const std::function<bool()>& is_late) {
-  if (sense == Sense::kGrowing) {
+  if (sense == Sense::kGrowing && !target_.is_modulus_stated()) {
     grow_adjoints(state, run);
   }
   std::vector<Piece> pieces = pieces_of(state, sense, run);

@@ -77,7 +77,8 @@ std::unique_ptr<CandidateJudge> CandidateJudge::make(const model::RobotSpec& spe
                                                      const RobotSymmetry& symmetry,
                                                      const CandidateOptions& options) {
   auto robot = model::Robot::create(spec, options.equilibrium.thread_count);
-  if (!robot) {
+  // What bending does takes a solution of each candidate by itself.
+  if (!robot || robot.value().is_modulus_stated()) {
     return nullptr;
   }
   std::unique_ptr<CandidateJudge> judge(

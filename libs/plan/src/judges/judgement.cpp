@@ -7,6 +7,15 @@
 
 namespace holdfast::plan {
 
+using verdict::ReasonCode;
+
+solver::EquilibriumOptions as_checked(const model::Robot& robot,
+                                      solver::EquilibriumOptions options) {
+  options.second_order = robot.is_modulus_stated() ? solver::SecondOrderWish::kCheck
+                                                   : solver::SecondOrderWish::kNothing;
+  return options;
+}
+
 verdict::Assessment first_look(const model::Robot& robot) {
   verdict::Assessment assessment = verdict::assess_rigidly(robot, false);
   const bool is_open =
@@ -24,8 +33,14 @@ verdict::Assessment assess(const model::Robot& robot, const solver::EquilibriumO
   return verdict::assess_equilibrium(robot, std::move(none), options.thread_count);
 }
 
+std::string verdict_text(const Judgement& judgement) {
+  return std::string(verdict::name(judgement.verdict)) +
+         (judgement.is_bent ? ", as linear theory does not suffice (holdfast check --deformed)"
+                            : "");
+}
+
 Judgement judge(const model::Robot& robot, const solver::EquilibriumOptions& options) {
-  solver::EquilibriumOptions mine = options;
+  solver::EquilibriumOptions mine = as_checked(robot, options);
   mine.has_rigid_figures = false;
   return judgement_of(assess(robot, mine));
 }
@@ -34,7 +49,9 @@ Judgement judgement_of(const verdict::Assessment& assessment) {
   Judgement judgement{.verdict = assessment.verdict,
                       .load_ratio_max = assessment.load_ratio_max,
                       .load_ratio_high = assessment.load_ratio_max,
-                      .margin_mm = assessment.simplified.margin_mm};
+                      .margin_mm = assessment.simplified.margin_mm,
+                      .is_bent = !assessment.reasons.empty() &&
+                                 assessment.reasons.front().code == ReasonCode::kSecondOrder};
   if (judgement.load_ratio_high) {
     *judgement.load_ratio_high =
         std::max(*judgement.load_ratio_high, assessment.load_ratio_range.high);

@@ -132,7 +132,9 @@ void StageJudge::take_core(const RobotState& before, const Transition& transitio
     return;
   }
   auto robot = model::Robot::create(spec, options_.thread_count);
-  core_ = robot ? CoreResponse::make(std::move(robot).value(), options_) : nullptr;
+  // What bending does takes a solution of each robot by itself.
+  const bool is_taken = robot && !robot.value().is_modulus_stated();
+  core_ = is_taken ? CoreResponse::make(std::move(robot).value(), options_) : nullptr;
   core_spec_ = std::move(spec);
 }
 
@@ -151,7 +153,7 @@ base::Result<StageJudgement> StageJudge::judge_piece(const model::RobotSpec& spe
   if (const auto assessment = assess_by_core(robot.value())) {
     return judgement_of(robot.value(), *assessment);
   }
-  return judgement_of(robot.value(), assess(robot.value(), options_));
+  return judgement_of(robot.value(), assess(robot.value(), as_checked(robot.value(), options_)));
 }
 
 base::Result<StageJudgement> StageJudge::judge_scene(const Scene& scene) {

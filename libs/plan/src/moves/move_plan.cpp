@@ -279,9 +279,8 @@ base::Result<MovePlan> find_moves(const MoveTask& task, const MoveOptions& optio
   if (!task.ignores_mechanics) {
     const Judgement start = judge_spec(task.start, options);
     if (!start.is_safe()) {
-      return base::bad_input(
-          fmt::format("the robot is {} before any step; a plan begins with a safe one",
-                      verdict::name(start.verdict)));
+      return base::bad_input(fmt::format(
+          "the robot is {} before any step; a plan begins with a safe one", verdict_text(start)));
     }
     const Judgement target = judge_spec(task.target, options);
     if (!target.is_safe()) {

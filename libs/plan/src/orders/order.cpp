@@ -254,7 +254,7 @@ base::Result<RobotOrder> find_robot_order(const OrderTask& task, const RobotOrde
   if (!task.start.empty()) {
     const Judgement start = growth.judge(made.starts.front());
     if (!start.is_safe()) {
-      return bad_start(fmt::format("the start is not safe: {}", verdict::name(start.verdict)));
+      return bad_start(fmt::format("the start is not safe: {}", verdict_text(start)));
     }
   }
   const Patience patience(options.seconds_max, options.is_interrupted);

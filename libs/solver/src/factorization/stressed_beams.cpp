@@ -154,7 +154,7 @@ StressedBeams::Vecs StressedBeams::softening(const Vecs& x) {
   return sums;
 }
 
-/// In robots that no threads share, each connection is looked at once.
+/// Robots that no threads share have each connection looked at once.
 StressedBeams::Vecs StressedBeams::second_order_forces_of_beams() {
   if (displacement_.size() >= host::Team::kSharedItemMin) {
     return sum_over_neighbours([&](std::size_t p, base::Direction direction, std::size_t q) {

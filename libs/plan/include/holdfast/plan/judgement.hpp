@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "holdfast/model/robot.hpp"
 #include "holdfast/solver/options.hpp"
@@ -22,11 +23,18 @@ struct Judgement {
   std::optional<double> margin_mm = {};
   /// `load_ratio_max` is not the largest load ratio, but proved to be no less than that.
   bool is_bound = false;
+  /// Whether it is undecided as linear theory does not suffice (verdict::ReasonCode::kSecondOrder).
+  bool is_bent = false;
 
   bool is_safe() const { return verdict == verdict::Verdict::kSafe; }
 
   friend bool operator==(const Judgement&, const Judgement&) = default;
 };
+
+/// The options with which a robot is judged as a check would: with the second-order check where
+/// somebody states the elastic modulus, as its doubts are part of the verdict there.
+solver::EquilibriumOptions as_checked(const model::Robot& robot,
+                                      solver::EquilibriumOptions options);
 
 /// What the rigid body alone says, at once and whatever the size: `unstable` for a robot that
 /// topples, else `undecided`, as no load is known.
@@ -40,8 +48,11 @@ verdict::Assessment assess(const model::Robot& robot,
 /// What a planner asks of it.
 Judgement judgement_of(const verdict::Assessment& assessment);
 
-/// The verdict of verdict::assess(). A robot that topples is not solved, unless its supports are
-/// bonded by the options.
+/// The verdict's name, and that linear theory does not suffice where that is the reason.
+std::string verdict_text(const Judgement& judgement);
+
+/// The verdict of verdict::assess(), as_checked(). A robot that topples is not solved, unless its
+/// supports are bonded by the options.
 Judgement judge(const model::Robot& robot, const solver::EquilibriumOptions& options = {});
 
 }  // namespace holdfast::plan
