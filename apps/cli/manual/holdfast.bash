@@ -161,6 +161,7 @@ _holdfast() {
         --plan) : ;;
         --withdraw) : ;;
         --attach) : ;;
+        --serial) : ;;
         --time) : ;;
         --json) files=1 ;;
         --connections) : ;;
@@ -168,7 +169,7 @@ _holdfast() {
         --size) : ;;
         --title) : ;;
         --view) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --board --image --pages --seed --kill --reset --cut --flip --plan --withdraw --attach --time --json --connections --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --board --image --pages --seed --kill --reset --cut --flip --plan --withdraw --attach --serial --time --json --connections --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
       esac
       ;;
     listen)
