@@ -210,6 +210,7 @@ complete -c holdfast -n '__fish_seen_subcommand_from emulate' -l flip -x -d 'The
 complete -c holdfast -n '__fish_seen_subcommand_from emulate' -l plan -x -d 'A module is planned at time T (s); the first module is told'
 complete -c holdfast -n '__fish_seen_subcommand_from emulate' -l withdraw -x -d 'A plan is withdrawn at time T; all@T: all plans'
 complete -c holdfast -n '__fish_seen_subcommand_from emulate' -l attach -x -d 'A module comes to the cell; its plan is fulfilled'
+complete -c holdfast -n '__fish_seen_subcommand_from emulate' -l serial -x -d 'That face of an emulated module is at a serial line; a module of FILE beyond it is real and not emulated'
 complete -c holdfast -n '__fish_seen_subcommand_from emulate' -l time -x -d 'Give up after this time (s on the robot) [default: 60]'
 complete -c holdfast -n '__fish_seen_subcommand_from emulate' -l json -r -F -d 'Write the report; - is standard output'
 complete -c holdfast -n '__fish_seen_subcommand_from emulate' -l connections -x -a 'all broken' -d 'Which connections a report lists: all, broken, or the N with the largest load ratios, these first [default: all]'

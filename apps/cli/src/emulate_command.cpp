@@ -11,6 +11,7 @@
 #include "figure.hpp"
 #include "file_clash.hpp"
 #include "holdfast/emulated.hpp"
+#include "holdfast/instrument.hpp"
 #include "own_files.hpp"
 #include "progress.hpp"
 #include "reading.hpp"
@@ -34,6 +35,7 @@ struct EmulateArguments {
       {"cut", Fault::Kind::kCut, true, "A line fails; FACE is +x, -x, +y, -y, +z or -z"},
       {"flip", Fault::Kind::kFlip, true, "The next byte that comes in there is damaged"}};
   ChangeOptions changes;
+  std::vector<std::string> serial;
   double time_max_s = 60;
   std::string json;
   std::string connections = "all";
@@ -115,7 +117,39 @@ class EmulateRun {
       return kExitUsage;
     }
     emulation_.faults.insert(emulation_.faults.end(), faults->begin(), faults->end());
+    for (const std::string& text : options_.serial) {
+      if (const auto code = add_serial(text, structure)) {
+        return *code;
+      }
+    }
     return emulate_structure(structure);
+  }
+
+  /// Opens a line to a real module; the exit code if that fails.
+  std::optional<int> add_serial(const std::string& text, const Structure& structure) {
+    constexpr sim::Time kJoined = 3'000'000;  // A real module has come, and a round is over.
+    const std::size_t mark = text.find('=');
+    const std::string place_text = text.substr(0, mark) + "@0";
+    const auto place = read_fault_place(place_text, true, structure);
+    if (mark == std::string::npos || mark + 1 == text.size() || !place) {
+      fmt::print(stderr, "holdfast: --serial: expected X,Y,Z:FACE=DEVICE, found '{}'\n",
+                 io::one_line(text));
+      return kExitUsage;
+    }
+    if (place->module < 0) {
+      fmt::print(stderr, "holdfast: {}\n", no_module("serial", text, place->cell));
+      return kExitUsage;
+    }
+    const std::string device = text.substr(mark + 1);
+    auto channel = open_channel(device, static_cast<std::uint32_t>(emulation_.link.bit_rate));
+    if (!channel) {
+      return fail(channel.error(), device);
+    }
+    channels_.push_back(std::move(channel).value());
+    emulation_.outside.push_back(
+        {.module = place->module, .face = place->face, .channel = channels_.back().get()});
+    emulation_.time_min = kJoined;
+    return std::nullopt;
   }
 
   /// Every module's page, as module_0.bin and so on.
@@ -167,6 +201,7 @@ class EmulateRun {
 
   const EmulateArguments& options_;
   emulator::EmulationOptions emulation_;
+  std::vector<std::unique_ptr<emulator::Channel>> channels_;
   Progress progress_;
 };
 
@@ -200,6 +235,12 @@ Command add_emulate(CLI::App& app) {
   add_seed(*command, options->seed, "Random seed").capture_default_str();
   add_fault_options(*command, options->faults);
   add_change_options(*command, options->changes, "s");
+  command
+      ->add_option("--serial", options->serial,
+                   "That face of an emulated module is at a serial line; a module of FILE beyond "
+                   "it is real and not emulated")
+      ->type_name("X,Y,Z:FACE=DEVICE")
+      ->allow_extra_args(false);
   command->add_option("--time", options->time_max_s, "Give up after this time (s on the robot)")
       ->type_name("T")
       ->check(number_between(0.001, 3600.0).description(""))
@@ -212,10 +253,14 @@ Command add_emulate(CLI::App& app) {
           [options] { return EmulateRun(*options).run(); },
           {.examples = {{"emulate arm.json", "what does the firmware say, and when?"},
                         {"emulate arm.json --board v1", "with the lines of Blinky Blocks 1"},
-                        {"emulate arm.json --pages flash", "only write the modules' pages"}},
+                        {"emulate arm.json --pages flash", "only write the modules' pages"},
+                        {"emulate arm.json --serial 1,0,1:+x=/dev/ttyUSB0",
+                         "a real module in an emulated robot"}},
            .notes = "The exact answer stands beside the robot's own; with --plan, --withdraw "
                     "and --attach it is that for the robot and what is planned in the end. "
-                    "Modules are told of nothing in the first 0.4 s.",
+                    "Modules are told of nothing in the first 0.4 s. With --serial emulated time "
+                    "is no faster than real time and 3 s at least, and undecided is waited out; a "
+                    "robot too large for real time may take the real module for silent.",
            .exits = {{kExitSafe, "the robot says safe"},
                      {kExitUnsafe, "the robot says overload or unstable"},
                      {kExitUndecided, "the robot says undecided"},

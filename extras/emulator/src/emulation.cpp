@@ -3,7 +3,9 @@
 #include "holdfast/emulator/emulation.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cstring>
+#include <thread>
 
 #include "holdfast/base/algebra.hpp"
 #include "holdfast/base/check.hpp"
@@ -104,6 +106,9 @@ class EmulatedModules {
  private:
   std::int32_t neighbour(std::int32_t module, int face) const;
   void announce();
+  void leave_out_real_modules();
+  bool wait_for_real_time(Cycles next);
+  void take_from_outside();
   void run_slice(Cycles begin);
   void hand_over(std::int32_t module);
   void make_fault(const Fault& fault);
@@ -118,6 +123,8 @@ class EmulatedModules {
   std::vector<std::uint8_t> cut_faces_;
   std::vector<std::uint8_t> attached_;                                  ///< By module, 0 or 1.
   std::vector<std::array<std::uint8_t, base::kDirectionCount>> flips_;  ///< Of the next byte.
+  std::optional<std::chrono::steady_clock::time_point> real_begin_;
+  std::vector<Cycles> outside_free_at_;  ///< When the next byte may come in, by line.
   std::size_t next_fault_ = 0;
   Cycles slice_ = kSliceCycles;
   Cycles now_ = 0;
@@ -155,7 +162,50 @@ EmulatedModules::EmulatedModules(const Image& image, const model::Robot& robot,
       modules_[at(fault.module)]->start_at(cycles(fault.at));
     }
   }
+  leave_out_real_modules();
   announce();
+}
+
+/// A module behind a channel has no power here.
+void EmulatedModules::leave_out_real_modules() {
+  outside_free_at_.resize(options_.outside.size());
+  for (const OutsideLine& line : options_.outside) {
+    const std::int32_t real = neighbour(line.module, base::index(line.face));
+    if (real >= 0) {
+      modules_[at(real)]->kill();
+    }
+  }
+}
+
+/// Emulated time must not run ahead of a real module's. False: something may have come in before
+/// `next`.
+bool EmulatedModules::wait_for_real_time(Cycles next) {
+  using Clock = std::chrono::steady_clock;
+  constexpr auto kNap = std::chrono::microseconds(500);
+  real_begin_ = real_begin_.value_or(Clock::now());
+  take_from_outside();
+  const auto passed =
+      std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - *real_begin_);
+  if (cycles(static_cast<Time>(passed.count())) >= next) {
+    return true;
+  }
+  std::this_thread::sleep_for(kNap);
+  return false;
+}
+
+/// Bytes from real modules come in one after the other, from now on.
+void EmulatedModules::take_from_outside() {
+  const Cycles on_line = byte_cycles(static_cast<std::uint32_t>(options_.link.bit_rate));
+  std::array<std::uint8_t, 512> bytes{};
+  for (std::size_t i = 0; i < options_.outside.size(); ++i) {
+    const OutsideLine& line = options_.outside[i];
+    for (const std::uint8_t byte : std::span(bytes).first(line.channel->read(bytes))) {
+      outside_free_at_[i] = std::max(outside_free_at_[i], now_) + on_line;
+      modules_[at(line.module)]->arrive(
+          usart_of(base::index(line.face)),
+          {.time = outside_free_at_[i], .byte_cycles = on_line, .byte = byte});
+    }
+  }
 }
 
 std::int32_t EmulatedModules::neighbour(std::int32_t module, int face) const {
@@ -201,6 +251,9 @@ bool EmulatedModules::run_for(Time duration) {
       make_fault(options_.faults[next_fault_++]);
       continue;
     }
+    if (!options_.outside.empty() && !wait_for_real_time(std::min(next, end))) {
+      continue;
+    }
     if (next == ~Cycles{0}) {
       return false;
     }
@@ -224,6 +277,11 @@ void EmulatedModules::run_slice(Cycles begin) {
 void EmulatedModules::hand_over(std::int32_t module) {
   for (const Sent& sent : modules_[at(module)]->take_sent()) {
     const int face = face_of(sent.usart);
+    for (const OutsideLine& line : options_.outside) {
+      if (line.module == module && base::index(line.face) == face) {
+        line.channel->write(sent.bytes);
+      }
+    }
     const std::int32_t other = neighbour(module, face);
     if (other < 0 || attached_[at(other)] == 0 || !modules_[at(other)]->is_alive() ||
         is_cut(module, face)) {
@@ -283,8 +341,13 @@ bool EmulatedModules::is_settled() const {
       next_fault_ < options_.faults.size() || now_ <= cycles(noticed_at_)) {
     return false;
   }
-  return std::ranges::all_of(modules_, [](const auto& module) {
-    return !module->is_alive() || module->status().verdict != agent::Verdict::kNone;
+  // A real module may have been late.
+  const bool waits_for_others = !options_.outside.empty();
+  return std::ranges::all_of(modules_, [&](const auto& module) {
+    const agent::Verdict verdict =
+        module->is_alive() ? module->status().verdict : agent::Verdict::kSafe;
+    return verdict != agent::Verdict::kNone &&
+           !(waits_for_others && verdict == agent::Verdict::kUndecided);
   });
 }
 
@@ -359,6 +422,9 @@ FirmwareReport EmulatedModules::report() const {
   Cycles cycles_all = 0;
   for (const auto& module : modules_) {
     const StepRecord& steps = module->steps();
+    if (steps.count == 0) {
+      continue;  // It was real, or never there.
+    }
     report.stack_bytes_max = std::max(report.stack_bytes_max, module->stack_bytes());
     report.step_count += steps.count;
     cycles_all += steps.cycles;

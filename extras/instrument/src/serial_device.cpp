@@ -13,6 +13,8 @@
 #include <thread>
 #include <utility>
 
+#include "holdfast/instrument.hpp"
+
 namespace holdfast::instrument {
 namespace {
 
@@ -98,3 +100,32 @@ void SerialDevice::write(std::span<const std::uint8_t> bytes) {
 }
 
 }  // namespace holdfast::instrument
+
+namespace holdfast {
+namespace {
+
+class SerialChannel final : public emulator::Channel {
+ public:
+  explicit SerialChannel(instrument::SerialDevice device) : device_(std::move(device)) {}
+
+  std::size_t read(std::span<std::uint8_t> bytes) override { return device_.read(bytes, 0); }
+
+  void write(std::span<const std::uint8_t> bytes) override { device_.write(bytes); }
+
+ private:
+  instrument::SerialDevice device_;
+};
+
+}  // namespace
+
+base::Result<std::unique_ptr<emulator::Channel>> open_channel(const std::string& device,
+                                                              std::uint32_t baud) {
+  auto opened = instrument::SerialDevice::open(device, baud);
+  if (!opened) {
+    return opened.error();
+  }
+  return std::unique_ptr<emulator::Channel>(
+      std::make_unique<SerialChannel>(std::move(opened).value()));
+}
+
+}  // namespace holdfast

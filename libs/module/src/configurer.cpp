@@ -20,7 +20,7 @@ std::pair<std::size_t, std::size_t> place_of(int part) {
 /// A configuration by message has passed two sums, and may still be of a faulty sender: numbers
 /// that the program relies on must be such.
 bool is_sensible(const agent::CubeSetup& setup) {
-  const auto is_positive = [](double value) { return value > 0 && value < 1e300; };
+  const auto is_positive = [](double value) { return value > 0 && value < 1e30; };
   return setup.timing.packet_bytes >= agent::wire::kPacketBytesMin &&
          setup.timing.packet_bytes <= kPayloadBytesMax && setup.facet_numerator > 0 &&
          setup.facet_denominator > 0 && is_positive(setup.facet_mm) &&

@@ -4,11 +4,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "holdfast/distributed.hpp"  // IWYU pragma: export
+#include "holdfast/distributed.hpp"         // IWYU pragma: export
+#include "holdfast/emulator/emulation.hpp"  // IWYU pragma: export
 
 /// Beside the facade: a robot on the table, over serial lines to free faces of its modules.
 ///
@@ -70,5 +72,9 @@ struct TwinReport {
 base::Result<TwinReport> compare_with_twin(std::span<const std::string> devices,
                                            const Structure& structure,
                                            const InstrumentOptions& options = {});
+
+/// Opens a serial line as one out of an emulated robot (emulator::OutsideLine).
+base::Result<std::unique_ptr<emulator::Channel>> open_channel(const std::string& device,
+                                                              std::uint32_t baud);
 
 }  // namespace holdfast

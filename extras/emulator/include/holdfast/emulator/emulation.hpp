@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -45,9 +46,27 @@ struct Fault {
   base::Direction face = base::Direction::kPlusX;
 };
 
+/// A line out of the emulated robot, to a real module.
+class Channel {
+ public:
+  virtual ~Channel() = default;
+  /// Reads what has come in, without waiting; returns how many bytes.
+  virtual std::size_t read(std::span<std::uint8_t> bytes) = 0;
+  virtual void write(std::span<const std::uint8_t> bytes) = 0;
+};
+
+/// The face of an emulated module at which a channel ends. If the robot has a module there, that
+/// one is real and is not emulated. With any, emulated time is no faster than real time.
+struct OutsideLine {
+  std::int32_t module = 0;
+  base::Direction face = base::Direction::kPlusX;
+  Channel* channel = nullptr;  ///< Outlives the emulation.
+};
+
 struct EmulationOptions {
   std::uint64_t seed = 1;  ///< Of the noise of the sensors and of when the modules start.
   std::vector<Fault> faults = {};
+  std::vector<OutsideLine> outside = {};
   /// The link of the board that the image is made for: its bit rate, and its packets.
   sim::LinkModel link = sim::blinky_blocks_v2();
   std::int32_t anchor = 0;       ///< The module that knows its cell.
