@@ -22,8 +22,8 @@ import tempfile
 
 DOCUMENTS = ['README.md', *(f'docs/{name}.md' for name in (
     'first_robot', 'first_plan', 'bring_your_file', 'tour', 'theory', 'second_order', 'solver',
-    'distributed', 'proof', 'page', 'formats', 'planning', 'reliability', 'evidence/solver',
-    'evidence/distributed', 'evidence/planning'))]
+    'distributed', 'proof', 'page', 'formats', 'planning', 'reliability', 'cascade',
+    'evidence/solver', 'evidence/distributed', 'evidence/planning'))]
 # These need the firmware's compilers; tests/firmware checks what they show.
 NOT_RUN = './dev firmware'
 

@@ -224,6 +224,8 @@ def commands(scenarios, tests):
     yield ['check', general[0], '--scatter', '5%', '--scatter-common', '3%', '--lose-one']
     yield ['check', safe, '--scatter-mass', '5%']
     yield ['check', 'cube.json', '--lose-one', '--lose-seconds', '0']
+    yield ['next', safe, '--set', 'elastic_modulus_mpa=0.05']
+    yield from (['check', path, '--cascade'] for path in (safe, topples, general[0]))
     yield from (['check', 'cube.json', '--lose-one', '--lose', part]
                 for part in ('modules', 'feet'))
     yield ['check', f'{tests}/physics/two_paths.json']

@@ -15,7 +15,7 @@ as there. Units: N, mm, kg, s. Cells are VisibleSim's triples, z up.
 from . import _core, robots
 from ._core import Error
 from ._distributed import Run
-from ._failures import Fit, Fitted, LoseOne, Reliability, fit
+from ._failures import Cascade, Fit, Fitted, LoseOne, Reliability, fit
 from ._many import check_many, table
 from ._page import PageNotFound
 from ._pictures import animate, plot_order, plot_steps
@@ -30,8 +30,7 @@ Error.__doc__ = 'A robot, a file or an option is not as it may be; one line says
 
 __version__ = _core.version()
 
-__all__ = ['Error', 'Fit', 'Fitted', 'LoseOne', 'Moves', 'Order', 'Outcome', 'PageNotFound',
-           'Places', 'Reliability', 'Remedies', 'Report', 'Robot', 'Run', 'Stage', 'Steps',
-           'Timings', 'Verdict', 'animate', 'check_many', 'families', 'fit', 'foreign_formats',
-           'generate', 'load',
-           'move', 'next_places', 'order', 'plot_order', 'plot_steps', 'robots', 'steps', 'table']
+__all__ = ['Cascade', 'Error', 'Fit', 'Fitted', 'LoseOne', 'Moves', 'Order', 'Outcome',
+           'PageNotFound', 'Places', 'Reliability', 'Remedies', 'Report', 'Robot', 'Run', 'Stage',
+           'Steps', 'Timings', 'Verdict', 'animate', 'check_many', 'families', 'fit',
+           'foreign_formats', 'generate', 'load', 'move', 'next_places', 'order', 'plot_order', 'plot_steps', 'robots', 'steps', 'table']

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The holdfast authors
 # SPDX-License-Identifier: Apache-2.0
-"""How sure a report is, and what follows if a part is lost."""
+"""How sure a report is, what follows if a part is lost, and what follows the break."""
 from __future__ import annotations
 
 import json
@@ -62,6 +62,29 @@ class LoseOne(NamedTuple):
     checks: int
     """How many took a check."""
     seconds: float
+
+
+class Cascade(NamedTuple):
+    """What follows the break: connections are taken out as they break, and the rest is judged."""
+
+    outcome: str
+    """``holds`` (nothing breaks or falls), ``stands`` (something is left), ``falls`` (nothing is)
+    or ``undecided``."""
+    rounds: list[dict[str, Any]]
+    """Each with ``broken``, connections with ``a``, ``b`` and ``load_ratio``, and ``fallen``,
+    cells."""
+    broken: int
+    """How many connections break in all."""
+    fallen: int
+    """How many modules fall in all."""
+    standing: list[list[int]]
+    """The cells of the modules that are left."""
+    checks: int
+    """How many pieces were judged."""
+
+
+def cascade_of(text: str) -> Cascade:
+    return Cascade(**json.loads(text)['cascade'])
 
 
 def reliability_of(text: str) -> Reliability:

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core, _geometry
-from ._failures import LoseOne, lose_one_of
+from ._failures import Cascade, LoseOne, cascade_of, lose_one_of
 from ._figures import Path
 from ._progress import Progress, told
 from ._report import Report
@@ -346,6 +346,19 @@ class Robot:
         with told(progress, 'lose_one', is_counted=True) as tell:
             return lose_one_of(_core.lose_one(self._held, list(parts), seconds, threads, memory,
                                               bonded, tell))
+
+    def cascade(self, *, threads: int = 0, memory: float = 4, bonded: bool = False,
+                progress: Progress = None) -> Cascade:
+        """What follows the break: which connections break one after another, what falls?
+
+        `progress` is called with (modules that stand, of how many).
+
+        >>> arm = Robot([[x, 0, 2] for x in range(7)], fixed=[[0, 0, 2]])
+        >>> arm.cascade().fallen
+        6
+        """
+        with told(progress, 'cascade', is_counted=True) as tell:
+            return cascade_of(_core.cascade(self._held, threads, memory, bonded, tell))
 
     def next(self, *, threads: int = 0, memory: float = 4, bonded: bool = False,
              progress: Progress = None) -> Places:

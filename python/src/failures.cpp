@@ -8,12 +8,14 @@
 
 #include "check_options.hpp"
 #include "common.hpp"
+#include "holdfast/cascade.hpp"
 #include "holdfast/fit.hpp"
 #include "holdfast/losses.hpp"
 #include "holdfast/reliability.hpp"
 #include "long_work.hpp"
 
-/// Adds how sure a report is, and what follows from losses: as the members of a JSON report.
+/// Adds how sure a report is, what follows from losses and what follows the break: as the members
+/// of a JSON report.
 namespace holdfast::python {
 namespace {
 
@@ -99,12 +101,24 @@ std::string fit(const std::string& text, const std::string& folder) {
   return fit_json(report);
 }
 
+std::string cascade(const SharedStructure& structure, const py::handle& threads,
+                    const py::handle& memory, bool is_bonded, py::object progress) {
+  const CheckOptions options = check_options(threads, memory, is_bonded);
+  Watch watch(std::move(progress));
+  const plan::Cascade found = without_gil(watch, [&] {
+    return find_cascade(*structure, options,
+                        [&](std::size_t standing, std::size_t count) { watch(standing, count); });
+  });
+  return object_of([&](io::JsonStream& json) { write_cascade_member(json, found); });
+}
+
 }  // namespace
 
 void add_failures(py::module_& module) {
   module.def("reliability", &reliability);
   module.def("lose_one", &lose_one);
   module.def("fit", &fit);
+  module.def("cascade", &cascade);
 }
 
 }  // namespace holdfast::python

@@ -38,6 +38,18 @@ def test_losses_are_those_of_robots_without_the_module():
         assert (left.check().verdict is not Verdict.SAFE) == (cell in fatal)
 
 
+def test_an_arm_that_breaks_falls_beyond_its_root():
+    robot = arm(7)
+    report = robot.check()
+    assert report.verdict is Verdict.OVERLOAD
+    cascade = robot.cascade()
+    assert cascade.outcome == 'stands'
+    assert cascade.standing == [[0, 0, 2]]
+    assert cascade.rounds[0]['broken'][0]['load_ratio'] == pytest.approx(report.load_ratio_max)
+    assert cascade.fallen == sum(len(turn['fallen']) for turn in cascade.rounds) == 6
+    assert arm(3).cascade().outcome == 'holds'
+
+
 def test_faults_are_named():
     with pytest.raises(holdfast.Error, match='expected a share'):
         arm(3).check().reliability(10)

@@ -60,5 +60,21 @@ expect_exit 2 check cube.json --lose-one --lose-seconds 0
 expect_exit 1 check "$unstable" --lose-one
 expect_line out '^  lose one    not tried'
 
+# What follows the break: an arm held at one end, of which five modules are too many.
+cat >arm.json <<'END'
+{"format": "holdfast-structure", "version": 1, "support_z": -1,
+ "modules": [{"cell": [0, 0, 0], "fixed": true}, [1, 0, 0], [2, 0, 0], [3, 0, 0], [4, 0, 0],
+             [5, 0, 0]]}
+END
+expect_exit 1 check arm.json --cascade --svg arm.svg --json arm_report.json
+expect_line out '^  cascade     breaks in 1 round; 5 of 6 modules fall$'
+expect_line out '^              1: \(0,0,0\)-\(1,0,0\) at 1\.00.* breaks; 5 modules fall$'
+expect_line arm.svg 'falls after the break'
+expect_line arm_report.json '"outcome": ?"stands"'
+expect_exit 0 check cube.json --cascade
+expect_line out '^  cascade     nothing breaks and nothing falls$'
+expect_usage '^holdfast check: --deformed and --cascade exclude each other$' \
+  check a --cascade --deformed
+
 [ "$faults" -eq 0 ] || exit 1
 echo "failures: all as expected"

@@ -8,6 +8,7 @@
 #include "commands.hpp"
 #include "figure.hpp"
 #include "file_clash.hpp"
+#include "holdfast/cascade.hpp"
 #include "holdfast/trial.hpp"
 #include "lose_one_options.hpp"
 #include "page.hpp"
@@ -41,6 +42,7 @@ struct CheckArguments {
   double factor_max = large::Options{}.factor_max;
   ScatterOptions scatter;
   LoseOneArguments lose_one;
+  bool is_cascade_wanted = false;
   double limit_seconds = limit::LimitOptions{}.seconds_max;
   int thread_count = 0;
   double memory_gb = 4;
@@ -92,7 +94,7 @@ class CheckRun {
     Structure structure = std::move(loaded).value();
     const auto scatter = find_scatter(structure, read_scatter(options_.scatter));
     const bool is_document_needed = !options_.html.empty() || options_.are_remedies_wanted ||
-                                    options_.lose_one.is_wanted ||
+                                    options_.lose_one.is_wanted || options_.is_cascade_wanted ||
                                     (scatter && !scatter->mass_cv.empty());
     if (!is_document_needed) {
       structure.document.modules = std::vector<io::ModuleEntry>();
@@ -117,13 +119,14 @@ class CheckRun {
                           }
                         });
     });
-    write_files(structure, result);
+    write_files(structure, result, more);
   }
 
   /// What options of their own files add to the report.
   struct MoreAnswers {
     std::string text;
     std::vector<std::function<void(io::JsonStream&)>> members;
+    std::optional<plan::Cascade> cascade;
   };
 
   MoreAnswers find_more(const Structure& structure, const CheckResult& result,
@@ -149,6 +152,12 @@ class CheckRun {
       more.members.emplace_back([&structure, report](io::JsonStream& json) {
         write_lose_one_member(json, structure.robot, report);
       });
+    }
+    if (options_.is_cascade_wanted) {
+      more.cascade = find_cascade(structure, how, counting(file, "module"));
+      more.text += cascade_text(structure, *more.cascade);
+      more.members.emplace_back(
+          [cascade = *more.cascade](io::JsonStream& json) { write_cascade_member(json, cascade); });
     }
     return more;
   }
@@ -179,15 +188,17 @@ class CheckRun {
     return find_remedies(structure, result, how, counting(file, "change"));
   }
 
-  void write_files(const Structure& structure, const CheckResult& result) {
+  void write_files(const Structure& structure, const CheckResult& result, const MoreAnswers& more) {
     if (!options_.csv.empty()) {
       write(options_.csv, [&](std::ostream& out) {
         write_connections_csv(out, structure, result, report_options(options_.csv));
       });
     }
-    const bool is_drawn = write_figure_or_complain(
-        options_.figure,
-        [&](const io::FigureOptions& figure) { return picture_svg(structure, result, figure); });
+    const bool is_drawn =
+        write_figure_or_complain(options_.figure, [&](const io::FigureOptions& figure) {
+          return more.cascade ? cascade_svg(structure, result, *more.cascade, figure)
+                              : picture_svg(structure, result, figure);
+        });
     bad_count_ += is_drawn ? 0 : 1;
     if (!options_.vtk.empty()) {
       write(options_.vtk, [&](std::ostream& out) {
@@ -442,6 +453,11 @@ Command add_check(CLI::App& app) {
   add_deformed(*command, *options);
   add_scatter_options(*command, options->scatter);
   add_lose_one_options(*command, options->lose_one);
+  command
+      ->add_flag("--cascade", options->is_cascade_wanted,
+                 "Say what follows the break: which connections break one after another, and which "
+                 "modules fall")
+      ->excludes("--deformed");
   add_quiet(*command, options->is_quiet);
   command->add_flag("--bonded", options->is_bonded,
                     "Treat the ground as glued: supports can neither lift nor tilt");

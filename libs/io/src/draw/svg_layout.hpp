@@ -95,6 +95,7 @@ struct Scene {
   bool is_general = false;  ///< Not just cubes on a floor: facets that touch are shown.
   std::vector<ModulePaint> paints;
   std::size_t ghost_count = 0;  ///< The last modules are none, but places where one may go.
+  bool has_fallen = false;      ///< Modules in the colour of unstable robots fall after a break.
   /// Cubes without obstacles in isometric view are drawn as what is seen of their faces; all else
   /// as bodies.
   std::optional<BodyView> bodies;

@@ -138,12 +138,12 @@ Entry facet_entry(const FacetSign& sign) {
 /// The entries for what occurs in the picture.
 std::vector<Entry> entries(const Scene& scene) {
   std::vector<Entry> list;
-  constexpr std::array<std::pair<Meaning, const char*>, 4> kMeanings = {
+  const std::array<std::pair<Meaning, const char*>, 4> meanings = {
       {{Meaning::kBroken, "a connection breaks (1 or more)"},
        {Meaning::kFixed, "fixed module"},
-       {Meaning::kUnstable, "unstable robot"},
+       {Meaning::kUnstable, scene.has_fallen ? "falls after the break" : "unstable robot"},
        {Meaning::kUnknown, "loads not known"}}};
-  for (const auto& [meaning, label] : kMeanings) {
+  for (const auto& [meaning, label] : meanings) {
     if (has_meaning(scene, meaning)) {
       list.push_back(color_entry(label, scene.color_of({.meaning = meaning})));
     }

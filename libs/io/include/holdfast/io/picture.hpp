@@ -53,6 +53,13 @@ struct StripFrame {
 std::string write_strip_svg(std::span<const StripFrame> frames, std::string_view title,
                             const FigureOptions& figure = {});
 
+/// Returns the picture of write_svg() with the modules in these cells in the colour of those that
+/// fall.
+std::string write_svg_with_fallen(const model::Robot& robot, std::span<const base::Cell> fallen,
+                                  const verdict::Assessment& assessment, std::string_view title,
+                                  std::span<const model::Obstacle> obstacles = {},
+                                  const FigureOptions& figure = {});
+
 /// Writes a VTK XML unstructured grid (.vtu, compressed binary) for ParaView: one cell per module,
 /// in the shape of its lattice, with load ratio, displacement and ground force, one line per
 /// connection with its forces, one square per facet that touches with its state and force, and a
