@@ -72,8 +72,9 @@ set(manual ${PROJECT_SOURCE_DIR}/apps/cli/manual)
 find_program(HOLDFAST_GZIP gzip REQUIRED)
 mark_as_advanced(HOLDFAST_GZIP)
 foreach(page holdfast holdfast-checker holdfast-check holdfast-steps holdfast-next holdfast-order
-             holdfast-move holdfast-simulate holdfast-emulate holdfast-convert holdfast-generate
-             holdfast-robots holdfast-view holdfast-listen holdfast-tell holdfast-twin)
+             holdfast-move holdfast-simulate holdfast-emulate holdfast-convert holdfast-fit
+             holdfast-generate holdfast-robots holdfast-view holdfast-listen holdfast-tell
+             holdfast-twin)
   set(packed ${CMAKE_CURRENT_BINARY_DIR}/${page}.1.gz)
   add_custom_command(OUTPUT ${packed} DEPENDS ${manual}/${page}.1
                      COMMAND ${HOLDFAST_GZIP} -9nc ${manual}/${page}.1 > ${packed})

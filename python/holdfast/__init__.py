@@ -33,4 +33,5 @@ __version__ = _core.version()
 __all__ = ['Cascade', 'Error', 'Fit', 'Fitted', 'LoseOne', 'Moves', 'Order', 'Outcome',
            'PageNotFound', 'Places', 'Reliability', 'Remedies', 'Report', 'Robot', 'Run', 'Stage',
            'Steps', 'Timings', 'Verdict', 'animate', 'check_many', 'families', 'fit',
-           'foreign_formats', 'generate', 'load', 'move', 'next_places', 'order', 'plot_order', 'plot_steps', 'robots', 'steps', 'table']
+           'foreign_formats', 'generate', 'load', 'move', 'next_places', 'order', 'plot_order',
+           'plot_steps', 'robots', 'steps', 'table']

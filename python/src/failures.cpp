@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,7 +36,8 @@ std::optional<double> share_of(const py::object& given, const char* what,
   }
   const auto share = given.cast<double>();
   if (!(share >= verdict::kCvMin && share <= most)) {
-    throw Error(fmt::format("{}: expected a share from 0.0001 to {}, found {}", what, most, share));
+    throw Error(std::string(what) + ": expected a share from 0.0001 to " +
+                (most < verdict::kCvMax ? "0.3" : "1") + ", found " + std::to_string(share));
   }
   return share;
 }

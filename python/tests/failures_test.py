@@ -57,3 +57,25 @@ def test_faults_are_named():
         arm(3).check().reliability(0.1, law='cauchy')
     with pytest.raises(holdfast.Error, match="expected 'connection'"):
         arm(3).lose_one(parts=['legs'])
+
+
+def test_what_a_robot_states_is_what_scatters():
+    stated = Robot([[x, 0, 2] for x in range(4)], fixed=[[0, 0, 2]],
+                   material={'strength_cv': 0.2, 'strength_distribution': 'weibull'}).check()
+    assert stated.reliability() == stated.reliability(0.2, law='weibull')
+    assert stated.reliability(mass=0.05).samples > 0
+    with pytest.raises(holdfast.Error, match='nothing is known to scatter'):
+        arm(3).check().reliability()
+
+
+def test_pull_tests_are_fitted_by_their_logarithms():
+    forces = [10.2, 12.9, 11.1, 9.5, 13.3, 11.8]
+    mean = sum(map(math.log, forces)) / len(forces)
+    variance = sum((math.log(force) - mean) ** 2 for force in forces) / len(forces)
+    found = holdfast.fit({'experiments': [{'pull': 'lateral', 'broke_n': force}
+                                          for force in forces]})
+    assert found.strength_lateral_n.value == pytest.approx(math.exp(mean + variance / 2), rel=1e-3)
+    assert found.strength_cv.low < found.strength_cv.value < found.strength_cv.high
+    assert found.strength_vertical_n.value is None
+    with pytest.raises(holdfast.Error, match='expected at least one experiment'):
+        holdfast.fit({'experiments': []})
