@@ -4,6 +4,7 @@ import { createHash } from 'node:crypto';
 import { readFileSync, readdirSync } from 'node:fs';
 import { deflateRawSync } from 'node:zlib';
 import { defineConfig, type Plugin } from 'vite';
+import { toLetters } from './src/core/letters';
 import { Core } from './src/core/wasm';
 
 const repository = new URL('../../', import.meta.url);
@@ -13,7 +14,10 @@ const scenarioFolder = new URL('scenarios/', repository);
 /** Modules that are made from files of the repository, and of what the core says. */
 function holdfastFiles(): Plugin {
   const makers: Record<string, () => unknown> = {
-    'virtual:core': () => deflateRawSync(readFileSync(coreFile), { level: 9 }).toString('base64'),
+    'virtual:core': () => {
+      const packed = deflateRawSync(readFileSync(coreFile), { level: 9 });
+      return { letters: toLetters(packed), size: packed.length };
+    },
     'virtual:vocabulary': async () =>
       (await Core.create(await WebAssembly.compile(readFileSync(coreFile)))).vocabulary(),
     'virtual:scenarios': () =>

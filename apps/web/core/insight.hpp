@@ -16,8 +16,8 @@ namespace holdfast::web {
 std::vector<std::size_t> hanging_modules(const model::Robot& robot, std::size_t connection);
 
 /// One or two sentences about the worst connection: what it alone holds, how far out, what that
-/// does to it, in N and N mm, and what of it the connection would hold. Empty where no load is known, or
-/// the robot does not stay.
+/// does to it, in N and N mm, and what of it the connection would hold. Empty where no load is
+/// known, or the robot does not stay.
 std::string why_text(const model::Robot& robot, const verdict::Assessment& assessment);
 
 }  // namespace holdfast::web

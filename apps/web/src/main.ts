@@ -234,6 +234,7 @@ function begin(): void {
   byId('undo').onclick = actions.undo;
   byId('redo').onclick = actions.redo;
   byId('fit').onclick = actions.h;
+  byId('verdict').onclick = actions.w;
   byId('help').onclick = actions['?'];
   byId('gallery-open').onclick = () => openGallery(bench, keeper);
   byId('new').onclick = () => bench.history.replace('beginning anew', new EditedRobot(bench.robot.lattice));

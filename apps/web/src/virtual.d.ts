@@ -3,8 +3,8 @@
 
 /** Made by vite.config.ts. */
 declare module 'virtual:core' {
-  /** The core's .wasm file, deflated, as base64. */
-  const core: string;
+  /** The core's .wasm file, deflated, as letters (core/letters.ts), and how many bytes these are. */
+  const core: { letters: string; size: number };
   export default core;
 }
 

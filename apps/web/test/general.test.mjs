@@ -10,7 +10,7 @@ import path from 'node:path';
 import { after, before, test } from 'node:test';
 import {
   clickFace, count, dropFile, figures, launch, message, newContext, openExample, openPage, pageFile, program, settled,
-  temporaryFolder, verdict,
+  temporaryFolder, verdict, scenario,
 } from './browser.mjs';
 
 let browser;
@@ -735,6 +735,29 @@ test('what has toppled lies until it is stood up', async () => {
   const at = await pointBeside(page, [0, 0, 1], [0, -0.5, 0]);
   await stands(() => page.mouse.click(at.x, at.y));
   assert.equal(await count(page), 4);
+  assert.deepEqual(page.faults, []);
+});
+
+test('what falls stays in the picture', async () => {
+  const page = await openPage(browser, { reducedMotion: 'no-preference' });
+  for (const name of ['general/slides_off_slope', 'arm_tips_c', 'scary_tips_c']) {
+    const text = readFileSync(scenario(name), 'utf8');
+    await dropFile(page, 'fall.json', text);
+    await page.waitForFunction((source) => globalThis.holdfast.bench.robot.base === source, text);
+    await settled(page);
+    await page.evaluate(() => globalThis.holdfast.app.see());
+    await page.evaluate(() => globalThis.holdfast.app.stopTopple());
+    await page.click('#topple');
+    await page.waitForTimeout(3500);
+    const outside = await page.evaluate(() => {
+      const { stage, robot } = globalThis.holdfast.app;
+      const { clientWidth, clientHeight } = stage.canvas;
+      const places = Array.from({ length: robot.count }, (_, slot) => stage.controls.target.clone().fromArray(robot.placeAt(slot)));
+      return places.map((place) => stage.project(place.applyMatrix4(stage.robot.matrix)))
+        .filter((at) => !at || at.x < 0 || at.y < 0 || at.x > clientWidth || at.y > clientHeight).length;
+    });
+    assert.equal(outside, 0, name);
+  }
   assert.deepEqual(page.faults, []);
 });
 

@@ -210,6 +210,9 @@ test('the table has the program’s loads in the order that is asked for, and it
   await page.keyboard.press('w');
   await settled(page);
   assert.ok((await page.innerText('#details tr.pointed')).includes(overload.load_ratio_max.toFixed(3)), 'W goes to the worst');
+  await page.keyboard.press('Escape');
+  await page.click('#verdict');
+  assert.ok((await page.innerText('#details tr.pointed')).includes(overload.load_ratio_max.toFixed(3)), 'and so does the verdict');
   assert.deepEqual(page.faults, []);
 });
 

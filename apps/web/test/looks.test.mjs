@@ -69,7 +69,7 @@ const ROWS = 12;
 /** The robot without the verdict and the tools. */
 async function coarsePicture(page) {
   const { x, y, width, height } = await page.locator('#canvas').boundingBox();
-  return coarse(page, await page.screenshot({ clip: { x, y: y + 90, width, height: height - 150 } }));
+  return coarse(page, await page.screenshot({ clip: { x, y: y + 120, width, height: height - 180 } }));
 }
 
 /** A picture in coarse: COLUMNS x ROWS mean colours, a hexadecimal digit for each channel. */

@@ -89,7 +89,11 @@ const look = (page) =>
       hasOwnColours: view.hasOwnColours,
       stage: timeline.at,
       stageVerdict: timeline.report?.verdict,
+      mode: app.mode,
       isExhibiting: app.isExhibiting,
+      hasLosses: view.losses !== undefined,
+      chip: textOf('chip-numbers'),
+      scatter: Number(one('scatter').value),
       hasTrace: player.trace !== undefined,
       limit: textOf('limit-text'),
       recording: one('record').getAttribute('aria-pressed') === 'true' ? Number(/(\d+) step/.exec(one('sequence-text').innerText)?.[1]) : undefined,
@@ -245,13 +249,45 @@ const DEEDS = {
       }
     }, value);
   },
+  async deform(page) {
+    if ((await press(page, 'deform')) && !(await page.isHidden('#deformed'))) {
+      await waitFor(page, () => globalThis.holdfast.app.mode === 'deformed', 1500);
+    }
+  },
+  async remedy(page, { pick }) {
+    await waitFor(page, () => document.querySelector('#why-list button'), 800);
+    const kind = pick(['module', 'prop', 'fixing', 'removal']);
+    await page.evaluate((name) => {
+      const button = document.querySelector(`[data-remedy=${name}]`);
+      if (button && !button.closest('[inert]')) {
+        button.click();
+      }
+    }, kind);
+    return kind;
+  },
+  async lose(page) {
+    if (await press(page, 'lose')) {
+      await waitFor(page, () => document.getElementById('lose-text').textContent !== '', 1500);
+    }
+  },
+  async scatter(page, { pick }) {
+    await page.evaluate((value) => {
+      const slider = document.getElementById('scatter');
+      if (!slider.closest('[inert]')) {
+        slider.value = value;
+        slider.dispatchEvent(new Event('input'));
+      }
+    }, pick([0, 10, 30]));
+  },
+  worst: (page) => page.evaluate(() => globalThis.holdfast.app.seeWorst()),
   async colours(page, { pick }) {
     await page.selectOption('#scale', pick(['paper', 'cividis']));
+    await page.selectOption('#subject', pick(['connections', 'modules']));
   },
 };
 
 /** How often each is done. */
-const WEIGHTS = { edit: 8, put: 2, 'take away': 2, type: 8, undo: 4, redo: 2, record: 2, open: 2, simulate: 3, stages: 4, limit: 2, collapse: 2, load: 2, obstacle: 2 };
+const WEIGHTS = { edit: 8, put: 2, 'take away': 2, type: 8, undo: 4, redo: 2, record: 2, open: 2, simulate: 3, stages: 4, limit: 2, collapse: 2, load: 2, obstacle: 2, deform: 3, remedy: 2, lose: 2 };
 const CHOSEN = process.env.HOLDFAST_DEEDS?.split(',') ?? Object.keys(DEEDS);
 const NAMES = CHOSEN.flatMap((name) => Array(WEIGHTS[name] ?? 1).fill(name));
 
@@ -327,8 +363,10 @@ function expectConsistent(seen, where) {
   assert.ok(seen.isOff.every((isOff) => isOff === seen.isExhibiting), `${where}: what is about the robot that is built is off beside a stage`);
   assert.doesNotMatch(`${seen.panel.figures} ${seen.limit}`, /-0\b(?!\.[1-9])|NaN|undefined/, where);
   assert.ok(!seen.hasTrace || seen.hasOwnColours, `${where}: the computation that is open has its colours`);
+  assert.ok(!seen.hasLosses || (seen.mode === 'build' && seen.answer?.verdict === 'safe'), `${where}: losses of what is not safe, or not shown`);
+  assert.ok(!/ p = /.test(seen.chip) || (seen.scatter > 0 && seen.mode === 'build'), `${where}: a probability that nobody asked for`);
   if (seen.isExhibiting) {
-    assert.equal(seen.panel.verdict, seen.stageVerdict, where);
+    assert.ok(seen.mode !== 'stage' || seen.panel.verdict === seen.stageVerdict, where);
     assert.ok(!seen.hasTrace && !seen.hasOwnColours, `${where}: a stage has its own colours`);
   }
 }
@@ -373,7 +411,7 @@ async function walk(names, actions) {
     if (seen.count > 0) {
       asked.push({ seen, where });
     }
-    if (i % FRESH === 0 && seen.count > 0 && !seen.isExhibiting && !(seen.hasOwnColours && !seen.hasTrace)) {
+    if (i % FRESH === 0 && seen.count > 0 && !seen.isExhibiting && !(seen.hasOwnColours && !seen.hasTrace) && !seen.hasLosses) {
       await expectFresh(page, fresh, seen, where);
       ++compared;
     }

@@ -20,15 +20,16 @@ import {
   type Trial,
   type Why,
 } from './types';
+import { fromLetters } from './letters';
 import type { WorkerCall, WorkerReply } from './worker';
 import CoreWorker from './worker?worker&inline';
 
 /** Thrown to who waits for a call that was given up. */
 export class Cancelled extends Error {}
 
-/** The core travels in the page as base64 of deflated bytes; it is compiled once for all workers. */
+/** The core travels in the page as letters for deflated bytes; it is compiled once for all workers. */
 async function compileCore(): Promise<WebAssembly.Module> {
-  const packed = Uint8Array.from(atob(CORE), (letter) => letter.charCodeAt(0));
+  const packed = fromLetters(CORE.letters, CORE.size);
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate-raw'));
   return WebAssembly.compile(await new Response(stream).arrayBuffer());
 }

@@ -177,8 +177,10 @@ export class App {
 
   /** What else is known of the robot that is built, beside its verdict. */
   set note(text: string) {
-    this.noted = text;
-    this.showTrial();
+    if (text !== this.noted) {
+      this.noted = text;
+      this.showTrial();
+    }
   }
 
   /** Colours of what follows from losses, in place of those of loads. */

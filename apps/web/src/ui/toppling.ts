@@ -1,11 +1,15 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
+import { Vector3 } from 'three';
 import type { Answer } from '../core/types';
-import type { EditedRobot } from '../model/edited_robot';
+import { widen, type Box, type EditedRobot } from '../model/edited_robot';
 import type { Ground } from '../view/ground';
 import type { Stage } from '../view/stage';
 import { Fall } from '../view/fall';
 import { Topple, type Motion } from '../view/topple';
+
+/** Then every fall is over. */
+const LONG_SECONDS = 100;
 
 /** Lets the robot fall, over its edge or as its rigid body begins to; it lies until it is stood up. */
 export class Toppling {
@@ -27,8 +31,23 @@ export class Toppling {
   start(robot: EditedRobot, answer: Answer): void {
     if (topples(answer)) {
       this.running = { motion: motionOf(robot, answer), begun: performance.now() };
+      this.keepInPicture(robot, this.running.motion);
       this.stage.draw();
       this.tell();
+    }
+  }
+
+  /** The camera steps back where the robot would leave the picture. */
+  private keepInPicture(robot: EditedRobot, motion: Motion): void {
+    const { low, high } = robot.bounds()!;
+    const box: Box = { low: [...low], high: [...high] };
+    const end = motion.matrix(LONG_SECONDS);
+    for (let corner = 0; corner < 8; ++corner) {
+      const at = low.map((value, k) => ((corner >> k) & 1 ? high[k] : value));
+      widen(box, new Vector3().fromArray(at).applyMatrix4(end).toArray());
+    }
+    if (!this.stage.holds(box.low, box.high)) {
+      this.stage.fit(box.low, box.high, true);
     }
   }
 

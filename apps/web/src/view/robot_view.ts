@@ -37,6 +37,7 @@ const WHITE: Rgb = [255, 255, 255];
 const FACE_BASE = 8;
 /** Codes of so many faces stand in one number. */
 const FACES_PER_NUMBER = 6;
+const FACE_WEIGHTS = Array.from({ length: FACES_PER_NUMBER }, (_, side) => FACE_BASE ** side);
 
 /** The two numbers of a module's faces, from the code of each direction. */
 function packed(lattice: Lattice, codeOf: (direction: number) => FaceCode): [number, number] {
@@ -179,20 +180,20 @@ export class RobotView {
     if ((this.subject !== 'connections' && !this.losses) || this.hasOwnColours || !answer?.has_loads || answer.verdict === 'unstable') {
       return;
     }
-    const isBroken = new Uint8Array(answer.connections.length / 3);
-    answer.broken.forEach((i) => (isBroken[i] = 1));
+    const { connections, loads, broken } = answer;
+    const isBroken = new Uint8Array(connections.length / 3);
+    broken.forEach((i) => (isBroken[i] = 1));
     const add = (module: number, direction: number, step: number) => {
       const at = this.instances[this.judged!.slots[module]];
       if (at >= 0) {
-        seams[2 * at + Math.floor(direction / FACES_PER_NUMBER)] += step * FACE_BASE ** (direction % FACES_PER_NUMBER);
+        seams[2 * at + (direction < FACES_PER_NUMBER ? 0 : 1)] += step * FACE_WEIGHTS[direction % FACES_PER_NUMBER];
       }
     };
-    for (let i = 0; 3 * i < answer.connections.length; ++i) {
-      const [a, b, direction] = answer.connections.subarray(3 * i, 3 * i + 3);
+    for (let i = 0; i < isBroken.length; ++i) {
       const isFatal = this.losses?.connections.has(i);
-      const step = isFatal === undefined ? loadStep(answer.loads[LOAD_FIELDS * i], isBroken[i] === 1) : loadStep(isFatal ? 1 : 0, isFatal);
-      add(a, direction, step);
-      add(b, direction ^ 1, step);
+      const step = isFatal === undefined ? loadStep(loads[LOAD_FIELDS * i], isBroken[i] === 1) : loadStep(isFatal ? 1 : 0, isFatal);
+      add(connections[3 * i], connections[3 * i + 2], step);
+      add(connections[3 * i + 1], connections[3 * i + 2] ^ 1, step);
     }
   }
 
