@@ -4,7 +4,7 @@ _holdfast() {
   local words='' files=''
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
-    mapfile -t COMPREPLY < <(compgen -W "check steps next order move simulate emulate listen tell twin convert generate robots view -h --help -V --version" -- "$current")
+    mapfile -t COMPREPLY < <(compgen -W "check steps next order move simulate emulate listen tell twin convert fit generate robots view -h --help -V --version" -- "$current")
     return
   fi
   case ${COMP_WORDS[1]} in
@@ -30,13 +30,14 @@ _holdfast() {
         --up-to) : ;;
         --scatter) : ;;
         --scatter-common) : ;;
+        --scatter-mass) : ;;
         --scatter-law) words="lognormal normal weibull" ;;
         --probability) : ;;
         --lose) : ;;
         --lose-seconds) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --json --connections --csv --svg --size --title --grey --view --no-legend --vtk --html --certificate --prove --buckling --limit --limit-seconds --remedies --deformed --up-to --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds -q --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --json --connections --csv --svg --size --title --grey --view --no-legend --vtk --html --certificate --prove --buckling --limit --limit-seconds --remedies --deformed --up-to --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --cascade -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     steps)
@@ -44,7 +45,7 @@ _holdfast() {
         --scatter) : ;;
         --scatter-common) : ;;
         --scatter-mass) : ;;
-        --scatter-law) : ;;
+        --scatter-law) words="lognormal normal weibull" ;;
         --probability) : ;;
         --lose) : ;;
         --lose-seconds) : ;;
@@ -63,7 +64,7 @@ _holdfast() {
         --html) files=1 ;;
         --vtk) files=1 ;;
         --threads) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --json --svg --size --title --grey --view --no-legend --step --strip --html --vtk --until-unsafe --verify -q --quiet --threads"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --json --svg --size --title --grey --view --no-legend --step --strip --html --vtk --until-unsafe --verify -q --quiet --threads"; else files=1; fi ;;
       esac
       ;;
     next)
@@ -101,7 +102,7 @@ _holdfast() {
         --scatter) : ;;
         --scatter-common) : ;;
         --scatter-mass) : ;;
-        --scatter-law) : ;;
+        --scatter-law) words="lognormal normal weibull" ;;
         --probability) : ;;
         --lose) : ;;
         --lose-seconds) : ;;
@@ -126,7 +127,7 @@ _holdfast() {
         --scatter) : ;;
         --scatter-common) : ;;
         --scatter-mass) : ;;
-        --scatter-law) : ;;
+        --scatter-law) words="lognormal normal weibull" ;;
         --probability) : ;;
         --lose) : ;;
         --lose-seconds) : ;;
@@ -170,7 +171,7 @@ _holdfast() {
         --size) : ;;
         --title) : ;;
         --view) words="iso front side top" ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --steps --stages --next --json --connections --trace --story --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --steps --stages --next --weaken --json --connections --trace --story --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
       esac
       ;;
     emulate)
@@ -191,6 +192,7 @@ _holdfast() {
         --plan) : ;;
         --withdraw) : ;;
         --attach) : ;;
+        --serial) : ;;
         --time) : ;;
         --json) files=1 ;;
         --connections) words="all broken" ;;
@@ -198,7 +200,7 @@ _holdfast() {
         --size) : ;;
         --title) : ;;
         --view) words="iso front side top" ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --board --image --pages --seed --kill --reset --cut --flip --plan --withdraw --attach --time --json --connections --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --board --image --pages --seed --kill --reset --cut --flip --plan --withdraw --attach --serial --time --json --connections --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
       esac
       ;;
     listen)
