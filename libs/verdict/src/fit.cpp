@@ -282,7 +282,7 @@ class Profile {
       inside = outside;
       step *= 1.6;
     }
-    for (int i = 0; i < 14; ++i) {
+    for (int i = 0; i < kHalvings; ++i) {
       const double middle = 0.5 * (inside + outside);
       (drop_at(middle, from) > kDrop ? outside : inside) = middle;
     }
@@ -290,6 +290,9 @@ class Profile {
   }
 
  private:
+  /// Of a step of at most some tenths of the logarithm: relative digits of 1e-6 remain.
+  static constexpr int kHalvings = 18;
+
   /// Goes on from the last point; where that has no likelihood left, from one that scatters much.
   double drop_at(double value, Point& from) const {
     std::vector<Point> start = {from};
