@@ -247,6 +247,21 @@ TEST(Losses, of_cubes_on_a_floor_are_as_checked_without) {
   EXPECT_GT(count.fatal - count.falling, 0U);
 }
 
+/// Soft robots are held as they are, and not trusted without some of their parts.
+TEST(Losses, of_soft_robots_are_as_checked_without) {
+  Count count;
+  const std::uint64_t seeds = test::campaign(32U);
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    model::RobotSpec spec = with_ratio(test::random_robot(seed, 4, 14), 0.2);
+    spec.is_modulus_stated = true;
+    spec.material.elastic_modulus_mpa = seed % 2 == 0 ? 0.3 : 1;
+    expect_as_checked(spec, "seed " + std::to_string(seed), count);
+  }
+  EXPECT_GT(count.robots, 0U);
+  EXPECT_GE(count.undecided, test::least(4U));
+  EXPECT_EQ(count.bounds, 0U);
+}
+
 TEST(Losses, on_all_lattices_and_supports_are_as_checked_without) {
   Count count;
   const std::uint64_t seeds = test::campaign(20U);

@@ -124,7 +124,10 @@ class LossSearch {
         robot_(robot),
         options_(options),
         patience_(options.seconds_max, not_interrupted_) {
+    options_.equilibrium = as_checked(robot, options_.equilibrium);
     options_.equilibrium.has_rigid_figures = false;
+    // What bending does takes a solution of each robot by itself.
+    options_.is_by_checks = options_.is_by_checks || robot.is_modulus_stated();
   }
 
   LossReport find() {
