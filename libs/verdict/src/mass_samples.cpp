@@ -51,7 +51,7 @@ class KeptStates {
  public:
   KeptStates(const model::Robot& robot, const Assessment& assessment,
              const solver::EquilibriumOptions& options)
-      : robot_(robot), assessment_(assessment) {
+      : robot_(robot) {
     const solver::Equilibrium& known = assessment.equilibrium;
     is_bonded_ = assessment.contact_model == ContactModel::kBonded;
     if (known.open_but_held_count > 0 || !known.displacement_low.empty()) {
@@ -100,7 +100,6 @@ class KeptStates {
 
  private:
   const model::Robot& robot_;
-  const Assessment& assessment_;
   bool is_bonded_ = false;
   std::unique_ptr<solver::LinearSystem> system_;
 };
