@@ -141,6 +141,6 @@ def fit(experiments: Union[str, 'os.PathLike[str]', Mapping[str, Any]]) -> Fit:
         text = pathlib.Path(experiments).read_text(encoding='utf-8')
         folder = str(pathlib.Path(experiments).parent)
     found = json.loads(_core.fit(text, folder))
-    numbers = {key: Fitted(**found[key])
-               for key in ('strength_vertical_n', 'strength_lateral_n', 'strength_cv')}
-    return Fit(**numbers, **{key: found[key] for key in Fit._fields if key not in numbers})
+    for key in ('strength_vertical_n', 'strength_lateral_n', 'strength_cv'):
+        found[key] = Fitted(**found[key])
+    return Fit(**{key: found[key] for key in Fit._fields})

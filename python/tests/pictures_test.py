@@ -451,7 +451,7 @@ def test_steps_are_drawn_one_by_one_and_side_by_side():
 
 
 def test_a_strip_of_many_steps_has_the_first_unsafe_one():
-    robot = holdfast.Robot([[0, 0, 0]], fixed=[[0, 0, 0]])
+    robot = holdfast.Robot([[0, 0, 0]], fixed=[[0, 0, 0]], supports=None)
     judged = holdfast.steps(robot, [{'attach': [[x, 0, 0]]} for x in range(1, 41)])
     unsafe = judged.first_unsafe[0]
     strip = judged.strip().svg()
