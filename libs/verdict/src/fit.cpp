@@ -513,7 +513,7 @@ std::optional<double> information_gain(std::span<const Experiment> experiments,
   const std::vector<double> before = information_so_far(likelihood, point);
   std::vector<double> after = before;
   const auto information = information_of(next, likelihood, point);
-  std::ranges::transform(after, information, after.begin(), std::plus<>());
+  std::transform(after.begin(), after.end(), information.begin(), after.begin(), std::plus<>());
   const auto first = log_determinant(before, n);
   const auto second = log_determinant(after, n);
   return first && second ? std::optional(*second - *first) : std::nullopt;
