@@ -314,7 +314,9 @@ Reply reliability_request(const Request& request) {
   }
   const verdict::StrengthScatter scatter{.cv = request.header.options[0] / 1000.0,
                                          .common_cv = request.header.options[1] / 1000.0};
-  const auto found = find_reliability(check(robot.value()), scatter);
+  const CheckResult result = check(robot.value());
+  const auto found = find_reliability(
+      AssessedRobot{.robot = robot.value(), .assessment = result.assessment}, scatter);
   return {.text = dump({{"holds", found ? Json(found->holds) : Json()},
                         {"fails", found ? Json(found->fails) : Json()},
                         {"text", reliability_text(robot.value(), found)}}),

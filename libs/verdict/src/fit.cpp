@@ -290,7 +290,7 @@ class Profile {
   }
 
  private:
-  /// Of a step of at most some tenths of the logarithm: relative digits of 1e-6 remain.
+  /// The number of times that a step of some tenths of a logarithm is halved: 1e-6 of it remain.
   static constexpr int kHalvings = 18;
 
   /// Goes on from the last point; where that has no likelihood left, from one that scatters much.
