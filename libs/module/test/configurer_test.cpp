@@ -95,6 +95,21 @@ void start_bare(Board& board, std::uint32_t id) {
   ASSERT_NE(board.module, nullptr);
 }
 
+/// What a byte of the setup holds between two fields is nobody's; any other byte counts.
+TEST(Configuration, is_summed_field_by_field) {
+  const Bytes setup = setup_of(page_of(1, true));
+  const std::uint16_t sum = sum_of_setup(setup);
+  std::size_t gap_count = 0;
+  for (std::size_t i = 0; i < setup.size(); ++i) {
+    Bytes other = setup;
+    other[i] ^= 0x55U;
+    const bool is_gap = i == 103 || (i >= 108 && i < 112) || (i >= 117 && i < 120);
+    EXPECT_EQ(sum_of_setup(other) == sum, is_gap) << i;
+    gap_count += is_gap ? 1 : 0;
+  }
+  EXPECT_EQ(gap_count, 8U);
+}
+
 TEST(Configurer, boards_without_a_page_become_a_robot_by_what_one_of_them_is_told) {
   std::vector<Board> boards(3, Board(false));
   for (std::uint32_t i = 0; i < 3; ++i) {

@@ -49,7 +49,8 @@ static_assert(kConfigurationBytes == 280);
 /// The bytes of the setup as they lie in a page.
 std::span<const std::uint8_t> setup_bytes(const Configuration& configuration);
 
-/// A sum of the setup alone: the same for all modules of a robot, whoever they are.
+/// A sum of the setup's fields alone: the same for all modules of a robot, whoever they are, and
+/// for all copies of the setup, whatever lies between its fields.
 std::uint16_t sum_of_setup(std::span<const std::uint8_t> setup_bytes);
 
 inline std::uint16_t setup_sum(const Configuration& configuration) {
