@@ -93,6 +93,7 @@ std::optional<base::Error> take_more(std::string_view more, io::Document& docume
   if (!(general.material == Material{})) {
     return base::bad_input("the material and gravity straight down are numbers of the request");
   }
+  document.is_default_modulus_stated = general.is_default_modulus_stated;
   document.extension = general.extension;
   document.extension.obstacle_list = std::move(obstacle_list);
   take_own(own_by_cell(general), document);
@@ -143,6 +144,7 @@ base::Result<model::RobotSpec> spec_of(const Request& request) {
   }
   model::RobotSpec spec{.support_z = request.header.support_z,
                         .material = material_of(request.header)};
+  spec.is_modulus_stated = spec.material.elastic_modulus_mpa != Material{}.elastic_modulus_mpa;
   for (const PlacedModule& module : request.modules) {
     add_module(spec, module.cell, module.role());
   }
@@ -198,6 +200,7 @@ base::Result<io::Document> edited(const io::Document& base, const Request& reque
 
 std::string more_of(const io::Document& document) {
   io::Document general;
+  general.is_default_modulus_stated = document.is_default_modulus_stated;
   general.extension = document.extension;
   const auto own = own_by_cell(document);
   for (const auto& [cell, one] : own) {

@@ -396,3 +396,19 @@ test('keys alone: the cursor on a free cell says what would come of a module the
   await settled(page);
   assert.equal(await verdict(page), 'unstable', `beyond ${tip}`);
 });
+
+// A tower of 60 cubes buckles: undecided where somebody states the elastic modulus, also that it is the default one.
+for (const [what, material] of [['nobody states', {}], ['is stated to be the default', { elastic_modulus_mpa: 100 }], ['is stated', { elastic_modulus_mpa: 50 }]]) {
+  test(`a tower whose elastic modulus ${what} is judged as by the program`, async () => {
+    const page = await openPage(browser, { viewport: DESKTOP });
+    const text = JSON.stringify({
+      format: 'holdfast-structure', version: 2, material, modules: [{ from: [0, 0, 0], to: [0, 0, 59] }],
+    });
+    const file = path.join(temporaryFolder(), 'tower.json');
+    writeFileSync(file, text);
+    await dropFile(page, 'tower.json', text);
+    await settled(page);
+    assert.equal(await verdict(page), ask(file).verdict);
+    await page.close();
+  });
+}

@@ -270,7 +270,7 @@ export class EditedRobot {
 
   /** Cubes on a floor without slip under their own weight. */
   get isPlain(): boolean {
-    return this.lattice === CUBIC && Object.keys(this.more).every((key) => key === 'steps');
+    return this.lattice === CUBIC && Object.keys(this.more).every((key) => key === 'steps' || key === 'material');
   }
 
   /** Gravity straight down is a number of the material, for the core as in files. */
@@ -281,7 +281,7 @@ export class EditedRobot {
   private moreText(hasSteps: boolean): string {
     const { steps, gravity_m_s2, ...rest } = this.more;
     const gravity = gravity_m_s2 === undefined || isStraightDown(gravity_m_s2) ? {} : { gravity_m_s2 };
-    const isPlain = this.isPlain && (!hasSteps || steps === undefined);
+    const isPlain = this.isPlain && rest.material === undefined && (!hasSteps || steps === undefined);
     return isPlain
       ? ''
       : textOf({ ...rest, ...gravity, ...(hasSteps && steps !== undefined ? { steps } : {}), lattice: this.lattice.name });

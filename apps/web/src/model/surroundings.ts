@@ -53,6 +53,8 @@ export interface Surroundings {
   /** Only modules that have something of their own. */
   modules?: readonly OwnModule[];
   steps?: readonly StepEntry[];
+  /** Where somebody states that the elastic modulus is what it is by default; any other is stated anyway. */
+  material?: { elastic_modulus_mpa?: number };
 }
 
 export const NO_SURROUNDINGS: Surroundings = {};
