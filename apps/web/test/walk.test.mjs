@@ -58,7 +58,9 @@ const look = (page) =>
       (robot.roleAt(slot) === 1 ? planned : modules).push(robot.roleAt(slot) === 2 ? { ...entry, fixed: true } : entry);
     }
     const { steps: _, ...surroundings } = robot.surroundings;
-    const material = Object.fromEntries(keys.map((key, i) => [key, robot.material[i]]).filter(([key]) => key !== 'gravity_m_s2'));
+    // The elastic modulus of 100 MPa is stated only where the file does so; any other is stated by being another.
+    const isSaid = ([key, value]) => key !== 'gravity_m_s2' && !(key === 'elastic_modulus_mpa' && value === 100);
+    const material = Object.fromEntries(keys.map((key, i) => [key, robot.material[i]]).filter(isSaid));
     const structure = {
       ...surroundings,
       format: 'holdfast-structure', version: 2, name: 'walk', lattice: robot.lattice.name,
