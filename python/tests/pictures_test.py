@@ -450,6 +450,16 @@ def test_steps_are_drawn_one_by_one_and_side_by_side():
         judged.state(3).svg()
 
 
+def test_a_strip_has_all_states_that_there_is_room_for():
+    robot = holdfast.Robot([[0, 0, 0]])
+    for count in (1, 21, 22, 23, 24, 25, 100):
+        judged = holdfast.steps(robot, [{'attach': [[x, 0, 0]]} for x in range(1, count + 1)])
+        strip = judged.strip().svg()
+        frames = strip.count('class="frame"')
+        assert frames == count + 1 if count < 24 else 22 < frames <= 24
+        assert '>start<' in strip and f'>after step {count - 1}<' in strip
+
+
 def test_a_strip_of_many_steps_has_the_first_unsafe_one():
     robot = holdfast.Robot([[0, 0, 0]], fixed=[[0, 0, 0]], supports=None)
     judged = holdfast.steps(robot, [{'attach': [[x, 0, 0]]} for x in range(1, 41)])

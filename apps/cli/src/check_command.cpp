@@ -102,7 +102,7 @@ class CheckRun {
     const CheckOptions how = check_options(structure, file);
     const CheckResult result = check(structure, how);
     const auto remedies = seek_remedies(structure, result, how, file);
-    const MoreAnswers more = find_more(structure, result, how, file);
+    const MoreAnswers more = find_more(structure, result, how, scatter, file);
     ++counts_[static_cast<std::size_t>(result.assessment.verdict)];
     if (shows_text()) {
       show(structure, result, file);
@@ -130,9 +130,11 @@ class CheckRun {
   };
 
   MoreAnswers find_more(const Structure& structure, const CheckResult& result,
-                        const CheckOptions& how, const std::string& file) {
+                        const CheckOptions& how,
+                        const std::optional<verdict::StrengthScatter>& scatter,
+                        const std::string& file) {
     MoreAnswers more;
-    if (const auto scatter = find_scatter(structure, read_scatter(options_.scatter))) {
+    if (scatter) {
       const auto reliability = find_reliability(structure, result, *scatter, how);
       count_exit(exit_code_of(options_.scatter, reliability));
       more.text += reliability_text(structure.robot, reliability);

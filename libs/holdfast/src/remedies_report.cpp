@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include "equilibrium_options.hpp"
 #include "holdfast/base/check.hpp"
 #include "holdfast/trial.hpp"
 
@@ -64,9 +65,7 @@ plan::Remedies find_remedies(
   const auto spec = io::make_spec(structure.document);
   HOLDFAST_CHECK(spec.has_value());  // The structure's robot was made of it.
   plan::RemedyOptions how;
-  how.equilibrium.memory_bytes_max = options.memory_bytes_max;
-  how.equilibrium.is_bonded = options.is_bonded;
-  how.equilibrium.thread_count = options.thread_count;
+  how.equilibrium = equilibrium_options(options);
   how.progress = progress;
   return plan::find_remedies(spec.value(), plan::judgement_of(result.assessment), how);
 }

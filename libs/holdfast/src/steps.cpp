@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "holdfast/host/text.hpp"
+#include "step_walk.hpp"
 
 namespace holdfast {
 namespace {
@@ -91,24 +92,22 @@ std::optional<base::Error> for_each_state(const StepsFile& file, const StepsResu
   if (!sequence) {
     return sequence.error();
   }
-  plan::RobotState robot(sequence.value().start);
-  std::optional<base::Error> error;
   if (wanted(0)) {
-    error = visit(0, std::vector<model::RobotSpec>{sequence.value().start});
-  }
-  for (std::size_t i = 0; i < result.judgement.steps.size() && !error; ++i) {
-    const model::Step& step = sequence.value().steps[i];
-    const auto transition = plan::find_transition(robot, step);
-    if (!transition) {
-      return transition.error();
+    if (auto error = visit(0, std::vector<model::RobotSpec>{sequence.value().start})) {
+      return error;
     }
-    if (wanted(i + 1)) {
-      const auto scenes = plan::find_scenes(robot, step, transition.value(), plan::Stage::kConnect);
-      error = scenes ? visit(i + 1, scenes.value().front().pieces) : scenes.error();
-    }
-    plan::apply(step, transition.value(), robot);
   }
-  return error;
+  const std::span<const model::Step> steps = sequence.value().steps;
+  return for_each_step(
+      sequence.value().start, steps.first(result.judgement.steps.size()),
+      [&](const plan::RobotState& robot, const model::Step& step,
+          const plan::Transition& transition, std::size_t i) -> std::optional<base::Error> {
+        if (!wanted(i + 1)) {
+          return std::nullopt;
+        }
+        const auto scenes = plan::find_scenes(robot, step, transition, plan::Stage::kConnect);
+        return scenes ? visit(i + 1, scenes.value().front().pieces) : scenes.error();
+      });
 }
 
 /// A robot that was solved anew, and what it was made of.
@@ -196,16 +195,13 @@ class Series {
 /// The states in a film strip: all of them, or some evenly spread, the first unsafe and the last.
 std::set<std::size_t> strip_states(const plan::SequenceJudgement& judged) {
   const std::size_t count = judged.steps.size();
-  std::set<std::size_t> states = {0, count};
+  const std::size_t intervals = count < kStripFrameMax ? count : kStripFrameMax - 2;
+  std::set<std::size_t> states = {count};
+  for (std::size_t i = 0; i < intervals; ++i) {
+    states.insert(i * count / intervals);
+  }
   if (judged.first_unsafe) {
     states.insert(judged.first_unsafe->step + 1);
-  }
-  const std::size_t frames = std::min(count + 1, kStripFrameMax - states.size());
-  for (std::size_t i = 0; i < frames && count < kStripFrameMax; ++i) {
-    states.insert(i);
-  }
-  for (std::size_t i = 1; i <= frames && count >= kStripFrameMax; ++i) {
-    states.insert(i * count / (frames + 1));
   }
   return states;
 }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "equilibrium_options.hpp"
 #include "holdfast/base/check.hpp"
 #include "holdfast/plan/candidates.hpp"
 
@@ -14,10 +15,9 @@ namespace holdfast {
 namespace {
 
 plan::CandidateOptions candidate_options(const CheckOptions& options) {
-  return {.equilibrium = {.memory_bytes_max = options.memory_bytes_max,
-                          .is_bonded = options.is_bonded,
-                          .thread_count = options.thread_count,
-                          .progress = options.progress}};
+  plan::CandidateOptions how{.equilibrium = equilibrium_options(options)};
+  how.equilibrium.progress = options.progress;
+  return how;
 }
 
 Trial trial_of(const plan::Candidate& candidate) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "equilibrium_options.hpp"
 #include "holdfast/base/check.hpp"
 #include "holdfast/cascade.hpp"
 
@@ -88,9 +89,7 @@ Cascade find_cascade(const Structure& structure, const CheckOptions& options,
   const auto spec = io::make_spec(structure.document);
   HOLDFAST_CHECK(spec.has_value());  // The structure's robot was made of it.
   plan::CascadeOptions how;
-  how.equilibrium.memory_bytes_max = options.memory_bytes_max;
-  how.equilibrium.is_bonded = options.is_bonded;
-  how.equilibrium.thread_count = options.thread_count;
+  how.equilibrium = equilibrium_options(options);
   how.progress = progress;
   auto found = plan::find_cascade(spec.value(), how);
   HOLDFAST_CHECK(found.has_value());  // Connected parts that something supports are robots.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include "equilibrium_options.hpp"
 #include "failures/losses_words.hpp"
 #include "holdfast/base/check.hpp"
 #include "holdfast/losses.hpp"
@@ -110,9 +111,7 @@ plan::LossOptions loss_options(const LoseOneOptions& options) {
   how.kinds = options.kinds;
   how.seconds_max = options.seconds_max;
   how.progress = options.progress;
-  how.equilibrium.memory_bytes_max = options.check.memory_bytes_max;
-  how.equilibrium.is_bonded = options.check.is_bonded;
-  how.equilibrium.thread_count = options.check.thread_count;
+  how.equilibrium = equilibrium_options(options.check);
   return how;
 }
 

@@ -8,7 +8,7 @@
 
 #include "failures/losses_words.hpp"
 #include "holdfast/io/steps_report.hpp"
-#include "holdfast/plan/robot_state.hpp"
+#include "step_walk.hpp"
 
 namespace holdfast {
 namespace {
@@ -196,21 +196,18 @@ base::Result<PlanFailures> find_plan_failures(const io::Document& document,
   if (!sequence) {
     return sequence.error();
   }
-  plan::RobotState robot(sequence.value().start);
   PlanWalk walk(document, wish);
-  const std::vector<model::Step>& steps = sequence.value().steps;
-  for (std::size_t i = 0; i < steps.size(); ++i) {
-    const auto transition = plan::find_transition(robot, steps[i]);
-    if (!transition) {
-      return transition.error();
-    }
-    if (auto error = walk.add(robot, steps[i], transition.value(), i)) {
-      return *std::move(error);
-    }
-    plan::apply(steps[i], transition.value(), robot);
-    if (wish.progress) {
-      wish.progress(i + 1);
-    }
+  auto error = for_each_step(sequence.value().start, sequence.value().steps,
+                             [&](const plan::RobotState& robot, const model::Step& step,
+                                 const plan::Transition& transition, std::size_t i) {
+                               auto fault = walk.add(robot, step, transition, i);
+                               if (!fault && wish.progress) {
+                                 wish.progress(i + 1);
+                               }
+                               return fault;
+                             });
+  if (error) {
+    return *std::move(error);
   }
   return std::move(walk).take();
 }
