@@ -42,6 +42,7 @@ Command add_move(CLI::App& app);
 Command add_next(CLI::App& app);
 Command add_order(CLI::App& app);
 Command add_robots(CLI::App& app);
+Command add_serve(CLI::App& app);
 Command add_simulate(CLI::App& app);
 Command add_steps(CLI::App& app);
 Command add_tell(CLI::App& app);

@@ -183,6 +183,9 @@ bool judges_many(const CLI::App& command) {
 /// What is said of an option that a command does not have; empty if it has all that are given.
 std::string unknown_option(const CLI::App& command) {
   for (const std::string& argument : command.remaining()) {
+    if (argument == "--") {
+      break;  // What follows are no options.
+    }
     if (argument.size() > 1 && argument.starts_with('-')) {
       const std::string name = argument.substr(0, argument.find('='));
       if (name == "--deformed" && judges_many(command)) {

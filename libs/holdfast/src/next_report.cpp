@@ -16,6 +16,8 @@ std::span<const Trial> listed(const NextResult& result, const NextReportOptions&
   return options.count_max == 0 ? all : all.first(std::min(all.size(), options.count_max));
 }
 
+}  // namespace
+
 void write_candidate(io::JsonStream& json, const Trial& trial) {
   json.begin_object();
   json.member("cell", trial.cell);
@@ -27,8 +29,6 @@ void write_candidate(io::JsonStream& json, const Trial& trial) {
   }
   json.end_object();
 }
-
-}  // namespace
 
 void write_next_members(io::JsonStream& json, const Structure& structure, const NextResult& result,
                         const NextReportOptions& options) {

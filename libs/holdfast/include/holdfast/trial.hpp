@@ -119,6 +119,9 @@ struct NextReportOptions {
 void write_next_json(std::ostream& out, const Structure& structure, const NextResult& result,
                      const NextReportOptions& options = {});
 
+/// Writes one place as an object, as write_next_json() does.
+void write_candidate(io::JsonStream& json, const Trial& trial);
+
 /// Writes the keys of write_next_json() into the object that is open.
 void write_next_members(io::JsonStream& json, const Structure& structure, const NextResult& result,
                         const NextReportOptions& options = {});
