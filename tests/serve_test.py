@@ -16,10 +16,11 @@ import time
 import unittest
 
 HOLDFAST, ROOT = sys.argv[1], pathlib.Path(sys.argv[2])
+LONG = {'seconds': 300, 'exact': True, 'progress': True}
 ARM = [[0, 0, 0], [0, 0, 1], [1, 0, 1], [1, 0, 0]]
 # Keys that say when, how long and from which file.
-RUN = {'seconds', 'robot', 'preparation_seconds', 'factor_seconds', 'name', 'options', 'wall_seconds',
-       'processor_seconds', 'setup_seconds', 'solve_seconds'}
+RUN = {'seconds', 'robot', 'preparation_seconds', 'factor_seconds', 'name', 'options',
+       'wall_seconds', 'processor_seconds', 'setup_seconds', 'solve_seconds'}
 
 
 class Client:
@@ -108,7 +109,8 @@ class Served(unittest.TestCase):
                     self.assertIn('error', answer)
                     continue
                 self.assertEqual(answer['result']['exit_code'], code)
-                self.assertEqual(answer_of(answer['result']['report']), answer_of(json.loads(report)))
+                self.assertEqual(answer_of(answer['result']['report']),
+                                 answer_of(json.loads(report)))
                 count += 1
         self.assertGreater(count, 10)
 
@@ -143,9 +145,11 @@ class Served(unittest.TestCase):
                                     cells=[place['cell'] for place in places])['result']
             self.assertEqual(len(places), len(tried['candidates']))
             for place, trial in zip(places, tried['candidates']):
-                self.assertEqual((place['cell'], place['verdict']), (trial['cell'], trial['verdict']))
-                if place['load_ratio_max'] is not None:
-                    self.assertAlmostEqual(place['load_ratio_max'], trial['load_ratio_max'], places=8)
+                for key in ('cell', 'verdict'):
+                    self.assertEqual(place[key], trial[key])
+                ratio = place['load_ratio_max']
+                if ratio is not None:
+                    self.assertAlmostEqual(ratio, trial['load_ratio_max'], places=8)
 
     def test_options_are_parameters(self):
         strong = self.client.ask('check', structure=ARM, set={'strength_lateral_n': 1e6},
@@ -164,16 +168,17 @@ class Served(unittest.TestCase):
                          ['result']['exit_code'], 0)
 
     def test_what_is_wrong_is_said(self):
+        together = {'structure': ARM, 'deformed': True, 'cascade': True}
         for params, words in (({}, ["'structure'", 'missing']),
                               ({'structur': ARM}, ['structur', "did you mean 'structure'"]),
                               ({'structure': 3}, ['found a number']),
-                              ({'structure': ARM, 'remedies': 'yes'}, ['remedies', 'true or false']),
+                              ({'structure': ARM, 'remedies': 'yes'}, ['true or false']),
                               ({'structure': ARM, 'scatter': 'much'}, ['--scatter']),
                               ({'structure': ARM, 'scatter': -3}, ['--scatter']),
                               ({'structure': ARM, 'set': [[1]]}, ['set', 'found an array']),
                               ({'structure': ARM, 'svg': '../x'}, ['svg', 'ending']),
                               ({'structure': ARM, 'json': 'x'}, ['json']),
-                              ({'structure': ARM, 'deformed': True, 'cascade': True}, ['--cascade'])):
+                              (together, ['--cascade'])):
             self.assert_error(self.client.ask('check', **params), -32602, *words)
         bad = {'format': 'holdfast-structure', 'version': 1, 'modules': [[0, 0, 0], [0, 0]]}
         self.assert_error(self.client.ask('check', structure=bad), -32001, '/modules/1')
@@ -181,15 +186,17 @@ class Served(unittest.TestCase):
                           'connected')
         self.assert_error(self.client.ask('chekc'), -32601, 'chekc')
         self.assert_error(self.client.ask('try', structure='x', cells=[[0, 0, 0]]), -32001, "'x'")
-        self.assert_error(self.client.ask('try', structure='x', cells=[[0, 0, 1e9]]), -32602, 'cells')
+        self.assert_error(self.client.ask('try', structure='x', cells=[[0, 0, 1e9]]), -32602,
+                          'cells')
 
     def test_messages_are_those_of_json_rpc(self):
+        head = '{"jsonrpc": "2.0", "id": 1, '
         for line, code in (('nonsense', -32700), ('{"jsonrpc":', -32700), ('[' * 100000, -32700),
                            ('[]', -32600), ('7', -32600), ('{"id": 1}', -32600),
                            ('{"jsonrpc": "1.0", "id": 1, "method": "loaded"}', -32600),
                            ('{"jsonrpc": "2.0", "id": [1], "method": "loaded"}', -32600),
-                           ('{"jsonrpc": "2.0", "id": 1, "method": 7}', -32600),
-                           ('{"jsonrpc": "2.0", "id": 1, "method": "loaded", "params": [1]}', -32602)):
+                           (head + '"method": 7}', -32600),
+                           (head + '"method": "loaded", "params": [1]}', -32602)):
             self.client.send(line)
             self.assert_error(self.client.read(), code)
         self.client.send('')
@@ -197,7 +204,8 @@ class Served(unittest.TestCase):
         self.client.send([{'jsonrpc': '2.0', 'method': 'loaded'}])
         self.client.send([{'jsonrpc': '2.0', 'id': 'a', 'method': 'loaded'}, 1,
                           {'jsonrpc': '2.0', 'method': 'loaded'},
-                          {'jsonrpc': '2.0', 'id': 'b', 'method': 'check', 'params': {'structure': ARM}}])
+                          {'jsonrpc': '2.0', 'id': 'b', 'method': 'check',
+                           'params': {'structure': ARM}}])
         answers = {answer['id']: answer for answer in self.client.read()}
         self.assertEqual(sorted(answers, key=str), [None, 'a', 'b'])
         self.assert_error(answers[None], -32600)
@@ -205,7 +213,8 @@ class Served(unittest.TestCase):
 
     def test_whatever_comes_the_next_request_is_answered(self):
         generator = random.Random(7)
-        good = json.dumps({'jsonrpc': '2.0', 'id': 1, 'method': 'check', 'params': {'structure': ARM}})
+        good = json.dumps({'jsonrpc': '2.0', 'id': 1, 'method': 'check',
+                           'params': {'structure': ARM}})
         for _ in range(300):
             text = list(good)
             for _ in range(generator.randint(1, 4)):
@@ -229,7 +238,7 @@ class Served(unittest.TestCase):
     def test_a_request_can_be_cancelled_and_tells_its_progress(self):
         cube = self.client.ask('generate', family='cube', size=14, output=True)
         structure = json.loads(cube['result']['outputs']['output'])
-        number = self.client.begin('order', target=structure, seconds=300, exact=True, progress=True)
+        number = self.client.begin('order', target=structure, **LONG)
         told = self.client.read()
         self.assertEqual((told['method'], told['params']['id']), ('progress', number))
         begin = time.monotonic()
@@ -249,12 +258,10 @@ class Served(unittest.TestCase):
 class Ends(unittest.TestCase):
     """What ends a request, a client or the server leaves nothing behind."""
 
-    LONG = {'seconds': 300, 'exact': True, 'progress': True}
-
     def long(self, client):
         cube = client.ask('generate', family='cube', size=14, output=True)
         structure = json.loads(cube['result']['outputs']['output'])
-        number = client.begin('order', target=structure, **self.LONG)
+        number = client.begin('order', target=structure, **LONG)
         client.read()  # Progress: it runs.
         return number
 

@@ -216,8 +216,9 @@ def bash_completion(pages):
                         'files=1' if entry.type in FILE_TYPES else ':')
                 values += f'        {"|".join(entry.names)}) {what} ;;\n'
         words = ' '.join(all_names(page.options()))
-        first = page.arguments()[0]
-        other = f'words="{" ".join(first.values)}"' if first.values else 'files=1'
+        first = page.arguments()[:1]
+        known = first and first[0].values
+        other = f'words="{" ".join(known)}"' if known else 'files=1' if first else ':'
         values += f'        *) if [[ $current == -* ]]; then words="{words}"; else {other}; fi ;;\n'
         cases += f'    {command})\n      case $previous in\n{values}      esac\n      ;;\n'
     top = ' '.join(commands + all_names(pages[''].options()))
@@ -325,7 +326,7 @@ def fish_completion(pages):
                  f'-d {fish_quoted(command.text)}\n')
         condition = f"'__fish_seen_subcommand_from {name}'"
         text += ''.join(fish_option(condition, entry) for entry in pages[name].options())
-        words = pages[name].arguments()[0].values
+        words = [word for entry in pages[name].arguments()[:1] for word in entry.values]
         if words:
             text += f'complete -c holdfast -n {condition} -f -a {fish_quoted(" ".join(words))}\n'
     return text

@@ -20,7 +20,7 @@ SECTIONS = [
     ('Tutorials', 'From nothing to an answer, step by step.',
      ['first_robot', 'first_plan', 'bring_your_file', 'python_examples', 'tour', 'porting']),
     ('How to', 'One task each.',
-     ['install', 'python', 'page', 'visiblesim', 'firmware', 'instrument', 'cluster']),
+     ['install', 'python', 'serve', 'page', 'visiblesim', 'firmware', 'instrument', 'cluster']),
     ('Reference', 'What there is, complete.',
      ['commands', 'formats', 'robots', 'python_api', 'cpp_api', 'wire', 'building', 'glossary']),
     ('Explanation', 'Why it works.',

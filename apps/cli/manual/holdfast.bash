@@ -4,7 +4,7 @@ _holdfast() {
   local words='' files=''
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
-    mapfile -t COMPREPLY < <(compgen -W "check steps next order move simulate emulate listen tell twin convert fit generate robots view -h --help -V --version" -- "$current")
+    mapfile -t COMPREPLY < <(compgen -W "check steps next order move simulate emulate listen tell twin serve convert fit generate robots view -h --help -V --version" -- "$current")
     return
   fi
   case ${COMP_WORDS[1]} in
@@ -232,6 +232,14 @@ _holdfast() {
         --baud) : ;;
         --time) : ;;
         *) if [[ $current == -* ]]; then words="-h --help --also --robot --lattice --set --support-z --pitch --allow-unknown --baud --time -q --quiet"; else files=1; fi ;;
+      esac
+      ;;
+    serve)
+      case $previous in
+        --jobs) : ;;
+        --request-seconds) : ;;
+        --request-memory) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --mcp --jobs --request-seconds --request-memory"; else :; fi ;;
       esac
       ;;
     convert)

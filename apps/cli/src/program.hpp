@@ -32,8 +32,8 @@ class Program {
   std::vector<Command> commands_;
 };
 
-/// Runs a program, ends what it printed, and returns the exit code. Throws nothing: memory that runs
-/// out and output that cannot be written are exit codes as well.
+/// Runs a program, ends what it printed, and returns the exit code. Throws nothing: memory that
+/// runs out and output that cannot be written are exit codes as well.
 int run_guarded(Program& program, int argc, char** argv);
 
 /// The exit code for the exception that is being handled, which it reports on standard error

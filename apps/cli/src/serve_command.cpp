@@ -32,9 +32,10 @@ Command add_serve(CLI::App& app) {
       "serve", "Answer requests on standard input, for planners in any language and assistants");
   command->add_flag("--mcp", options->is_mcp,
                     "Speak the Model Context Protocol, for assistants, in place of JSON-RPC 2.0");
-  command->add_option("--jobs", options->job_count, "Requests that are worked on at the same time")
-      ->check(CLI::Range(1, 64))
-      ->capture_default_str();
+  command
+      ->add_option("--jobs", options->job_count,
+                   "Requests that are worked on at the same time; by default one for each core")
+      ->check(CLI::Range(1, 64));
   command
       ->add_option("--request-seconds", options->limits.seconds_max,
                    "Most time for a request, s; 0: no limit")

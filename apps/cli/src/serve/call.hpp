@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "holdfast/base/result.hpp"
+#include "holdfast/holdfast.hpp"
 #include "serve/json.hpp"
 #include "serve/kept_structures.hpp"
 

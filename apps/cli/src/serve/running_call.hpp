@@ -68,7 +68,7 @@ class RunningCall {
   /// Asks it to end; who does not within a second is ended by tick().
   void cancel() { stop(Finished::End::kCancelled); }
 
-  /// To be called several times a second: ends who takes too long.
+  /// Ends what takes too long; called several times a second.
   void tick();
 
  private:
