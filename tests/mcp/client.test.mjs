@@ -49,7 +49,7 @@ test('what is wrong is an error of the tool, and the next call is answered',
   const wrong = await client.callTool({name: 'check', arguments: {structure: [[0, 0]]}});
   assert.ok(wrong.isError);
   assert.match(wrong.content[0].text, /three/);
-  const unknown = await client.callTool({name: 'check', arguments: {structur: kArm}});
+  const unknown = await client.callTool({name: 'check', arguments: {structures: kArm}});
   assert.match(unknown.content[0].text, /did you mean 'structure'/);
   await assert.rejects(client.callTool({name: 'demolish', arguments: {}}), /unknown tool/);
   const right = await client.callTool({name: 'check', arguments: {structure: kArm}});

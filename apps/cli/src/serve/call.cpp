@@ -266,8 +266,8 @@ std::vector<Parameter> parameters_of(const CLI::App& command) {
       parameters.push_back({name_of(*option), kind_of(*option), option});
     }
   }
-  std::ranges::stable_partition(parameters,
-                                [](const Parameter& each) { return each.is_positional(); });
+  std::stable_partition(parameters.begin(), parameters.end(),
+                        [](const Parameter& each) { return each.is_positional(); });
   return parameters;
 }
 
