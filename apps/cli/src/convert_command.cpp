@@ -57,13 +57,36 @@ int write_binary(const io::Document& document, const ConvertArguments& options) 
   return error ? fail(*error, options.to) : 0;
 }
 
+/// The format of robots as links and joints that the ending says; none if it says another one.
+std::optional<io::RobotDescription> find_description(const std::string& path) {
+  return has_ending(path, ".urdf")  ? std::optional(io::RobotDescription::kUrdf)
+         : has_ending(path, ".sdf") ? std::optional(io::RobotDescription::kSdf)
+                                    : std::nullopt;
+}
+
+int write_description(const io::Document& document, const ConvertArguments& options,
+                      io::RobotDescription format) {
+  const auto structure = make_structure(document);
+  if (!structure) {
+    return fail(structure.error(), options.from);
+  }
+  const model::Robot& robot = structure.value().robot;
+  const auto text = io::write_robot_description(robot, named(document, options.from).name, format);
+  if (!text) {
+    return fail(text.error(), options.from);
+  }
+  print_notes(io::lost_in_robot_description(robot), options.to);
+  return write_or_complain(options.to, text.value()) ? 0 : kExitBadInput;
+}
+
 int run(const ConvertArguments& options) {
   const bool to_json = options.to.ends_with(".json");
   const bool to_binary = options.to.ends_with(".holdfast");
-  if (!to_json && !to_binary && !options.to.ends_with(".xml")) {
+  const auto description = find_description(options.to);
+  if (!to_json && !to_binary && !description && !options.to.ends_with(".xml")) {
     fmt::print(stderr,
                "holdfast: {}: the ending says the format: expected .json (holdfast JSON), .xml "
-               "(VisibleSim XML) or .holdfast (binary)\n",
+               "(VisibleSim XML), .holdfast (binary), .urdf or .sdf\n",
                options.to);
     return kExitUsage;
   }
@@ -75,6 +98,9 @@ int run(const ConvertArguments& options) {
     return fail(read.error(), options.from);
   }
   const io::Document& document = read.value().document;
+  if (description) {
+    return write_description(document, options, *description);
+  }
   if (to_binary) {
     return write_binary(document, options);
   }
@@ -109,13 +135,14 @@ Command add_convert(CLI::App& app) {
   add_required(*command, "FROM", options->from,
                "Structure to read, any format; - is standard input");
   add_required(*command, "TO", options->to,
-               "File to write; .xml, .json or .holdfast says the format");
+               "File to write; .xml, .json, .holdfast, .urdf or .sdf says the format");
   add_reading(*command, options->reading);
   return {command,
           [options] { return run(*options); },
           {.examples = {{"convert robot.xml robot.json", "from VisibleSim to holdfast JSON"},
                         {"convert robot.json robot.xml", "and back"},
                         {"convert robot.json robot.holdfast", "small and quick to read"},
+                        {"convert robot.json robot.urdf", "for simulators of rigid bodies"},
                         {"convert figure.stl figure.json --pitch 40",
                          "fill a mesh with modules of 40 mm"}},
            .notes = foreign_text() +

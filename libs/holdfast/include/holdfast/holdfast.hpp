@@ -28,6 +28,7 @@
 #include "holdfast/io/near_miss.hpp"           // IWYU pragma: export
 #include "holdfast/io/picture.hpp"             // IWYU pragma: export
 #include "holdfast/io/report.hpp"              // IWYU pragma: export
+#include "holdfast/io/robot_description.hpp"   // IWYU pragma: export
 #include "holdfast/large/follow.hpp"           // IWYU pragma: export
 #include "holdfast/limit/limit_load.hpp"       // IWYU pragma: export
 #include "holdfast/model/robot.hpp"            // IWYU pragma: export
