@@ -84,10 +84,13 @@ test('an order is found, its steps are safe, a picture is drawn', () => {
   assert.match(holdfast.picture(stairs), /^<svg|^<\?xml/);
   assert.match(holdfast.text(stairs), /^robot: safe/);
   const arm = join(scenarios, 'arm_breaks_a.json');
-  const { limit_load_factor: factor } = JSON.parse(program('check', '--limit', '--json', '-', arm).stdout);
+  const asked = program('check', '--limit', '--lose-one', '--json', '-', arm).stdout;
+  const { limit_load_factor: factor, lose_one: losses } = JSON.parse(asked);
   assert.ok(Math.abs(holdfast.limitLoad(scenario('arm_breaks_a.json')).factor - factor) < 1e-6);
   assert.ok(holdfast.reliability(scenario('arm_breaks_a.json'), 0.1).holds < 1);
-  assert.equal(holdfast.loseOne(stairs).lose_one.holds_all, true);
+  const lost = holdfast.loseOne(scenario('arm_breaks_a.json')).lose_one;
+  assert.equal(lost.holds_all, losses.holds_all);
+  assert.deepEqual(lost.fatal, losses.fatal);
 });
 
 test('what is wrong is thrown, and the next call is answered', () => {
