@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "formats/foreign_reading.hpp"
+#include "holdfast/host/text.hpp"
 #include "text_input.hpp"
 
 namespace holdfast::io {
@@ -155,8 +156,9 @@ base::Result<ReadDocument> read_foreign(const ForeignFormat& format, std::string
                   fmt::format("expected modules, found none in this file ({})", format.name)});
   }
   if (!reading.has_failed()) {
-    reading.warn_of_all(fmt::format("read as {}: {} modules; not read: {}", format.name,
-                                    reading.document.modules.size(), format.lost));
+    reading.warn_of_all(fmt::format("read as {}: {}; not read: {}", format.name,
+                                    host::counted(reading.document.modules.size(), "module"),
+                                    format.lost));
     take_ground(reading);
     expect_single_cells(reading);
     reading.complete_material(options, nowhere);
