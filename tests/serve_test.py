@@ -235,6 +235,13 @@ class Served(unittest.TestCase):
         numbers = {self.client.begin('check', structure=ARM) for _ in range(300)}
         self.assertEqual({self.client.read()['id'] for _ in numbers}, numbers)
 
+    def test_a_client_may_write_all_before_it_reads(self):
+        request = json.dumps({'jsonrpc': '2.0', 'id': 1, 'method': 'methods'})
+        count = 200  # Some 30 KB of answer each: far more than a pipe holds.
+        for _ in range(count):
+            self.client.send(request + ' ' * 2000)
+        self.assertEqual(sum('result' in self.client.read() for _ in range(count)), count)
+
     def test_a_request_can_be_cancelled_and_tells_its_progress(self):
         cube = self.client.ask('generate', family='cube', size=14, output=True)
         structure = json.loads(cube['result']['outputs']['output'])

@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <climits>
+#include <csignal>
 #include <exception>
 #include <vector>
 
@@ -18,6 +20,8 @@ namespace {
 
 /// Tasks that wait for their turn; as long as there are so many no further input is read.
 constexpr std::size_t kTasksMax = 1000;
+/// Bytes of answers that nobody has read; likewise.
+constexpr std::size_t kOutputMax = std::size_t{1} << 26U;
 constexpr int kTickMs = 100;
 
 std::string message_of(const std::optional<Json>& id, const Reply& reply) {
@@ -53,7 +57,7 @@ std::string find_fault(const Json& message) {
 void Server::run() {
   const Interruption interruption;
   ::signal(SIGPIPE, SIG_IGN);
-  while (!is_ended_ && !Interruption::is_here() && (!is_input_over_ || !tasks_.empty())) {
+  while (!is_gone_ && !Interruption::is_here() && has_work()) {
     start_tasks();
     wait();
     finish_tasks();
@@ -61,7 +65,14 @@ void Server::run() {
   tasks_.clear();
 }
 
-bool Server::is_waiting_for_input() const { return !is_input_over_ && tasks_.size() < kTasksMax; }
+bool Server::has_work() const {
+  return !is_written() || (!is_shut_down_ && (!is_input_over_ || !tasks_.empty()));
+}
+
+bool Server::is_waiting_for_input() const {
+  return !is_input_over_ && !is_shut_down_ && tasks_.size() < kTasksMax &&
+         output_.size() - written_ < kOutputMax;
+}
 
 void Server::wait() {
   std::vector<pollfd> polled;
@@ -73,6 +84,10 @@ void Server::wait() {
     }
   };
   add(is_waiting_for_input() ? STDIN_FILENO : -1, nullptr);
+  if (!is_written()) {
+    polled.push_back({.fd = STDOUT_FILENO, .events = POLLOUT, .revents = 0});
+    owners.push_back(nullptr);
+  }
   for (Task& task : tasks_) {
     if (task.running) {
       add(task.running->output(), &task);
@@ -83,8 +98,15 @@ void Server::wait() {
     return;
   }
   for (std::size_t i = 0; i < polled.size(); ++i) {
-    if (polled[i].revents != 0) {
-      owners[i] != nullptr ? take_outputs(*owners[i], polled[i].fd) : take_input();
+    if (polled[i].revents == 0) {
+      continue;
+    }
+    if (owners[i] != nullptr) {
+      take_outputs(*owners[i], polled[i].fd);
+    } else if (polled[i].fd == STDOUT_FILENO) {
+      write_what_fits();
+    } else {
+      take_input();
     }
   }
 }
@@ -120,7 +142,7 @@ void Server::take_input() {
 }
 
 void Server::take_line(const std::string& line) {
-  if (is_ended_ || line.find_first_not_of(" \t\r") == std::string::npos) {
+  if (is_shut_down_ || line.find_first_not_of(" \t\r") == std::string::npos) {
     return;
   }
   const auto message = read_json(line);
@@ -195,7 +217,7 @@ void Server::take_request(const Json& message, const std::optional<Json>& id,
     cancel(*reply.cancelled);
   }
   answer(id, batch, reply);
-  is_ended_ = is_ended_ || reply.is_shutdown;
+  is_shut_down_ = is_shut_down_ || reply.is_shutdown;
 }
 
 void Server::cancel(const Json& id) {
@@ -265,15 +287,24 @@ void Server::answer(const std::optional<Json>& id, const std::shared_ptr<Batch>&
 }
 
 void Server::write_line(const std::string& line) {
-  const std::string text = line + "\n";
-  std::string_view rest = text;
-  while (!rest.empty() && !is_ended_) {
-    const ssize_t size = ::write(STDOUT_FILENO, rest.data(), rest.size());
-    if (size < 0 && errno != EINTR) {
-      is_ended_ = true;  // Nobody reads any more.
-      return;
+  output_ += line + "\n";
+  write_what_fits();
+}
+
+void Server::write_what_fits() {
+  pollfd polled = {.fd = STDOUT_FILENO, .events = POLLOUT, .revents = 0};
+  while (!is_written() && ::poll(&polled, 1, 0) > 0) {
+    const std::size_t size = std::min<std::size_t>(PIPE_BUF, output_.size() - written_);
+    const ssize_t count = ::write(STDOUT_FILENO, output_.data() + written_, size);
+    if (count < 0 && errno != EINTR) {
+      is_gone_ = true;  // Nobody reads any more.
+      written_ = output_.size();
     }
-    rest.remove_prefix(size < 0 ? 0 : static_cast<std::size_t>(size));
+    written_ += count > 0 ? static_cast<std::size_t>(count) : 0;
+  }
+  if (is_written()) {
+    output_.clear();
+    written_ = 0;
   }
 }
 

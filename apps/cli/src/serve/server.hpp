@@ -58,19 +58,27 @@ class Server {
   void wait();
   void take_outputs(Task& task, int descriptor);
   void finish_tasks();
+  bool has_work() const;
   bool is_waiting_for_input() const;
 
   void answer(const std::optional<Json>& id, const std::shared_ptr<Batch>& batch,
               const Reply& reply);
   void write_line(const std::string& line);
 
+  bool is_written() const { return written_ == output_.size(); }
+
+  void write_what_fits();
+
   Program& program_;
   std::unique_ptr<Protocol> protocol_;
   ServerOptions options_;
   LineReader lines_;
   std::list<Task> tasks_;
+  std::string output_;  ///< Written up to `written_`: a client may write on before it reads.
+  std::size_t written_ = 0;
   bool is_input_over_ = false;
-  bool is_ended_ = false;
+  bool is_shut_down_ = false;
+  bool is_gone_ = false;  ///< The client.
 };
 
 }  // namespace holdfast::cli
