@@ -141,7 +141,7 @@ template <class Archive>
 void visit(Archive& archive, Equilibrium& found) {
   visit_solution(archive, found);
   archive(found.outcome, found.law, found.others, found.facet_force, found.open_but_held_count,
-          found.free_gamma, found.attempts, found.method, found.precision, found.steps,
+          found.slip, found.free_gamma, found.attempts, found.method, found.precision, found.steps,
           found.iteration_count, found.made_column_count);
 }
 

@@ -29,6 +29,8 @@ std::vector<base::Cell> cells_of(const model::Robot& robot, const Reason& reason
       }
       return {robot.modules()[static_cast<std::size_t>(reason.numbers[1])].cell,
               robot.modules()[static_cast<std::size_t>(reason.numbers[2])].cell};
+    case ReasonCode::kFeetSlip:
+      return {robot.modules()[static_cast<std::size_t>(reason.numbers[1])].cell};
     case ReasonCode::kMaySlip:
       return {robot.modules()[static_cast<std::size_t>(reason.numbers[0])].cell};
     default:
@@ -67,6 +69,7 @@ const char* name(ReasonCode code) {
                                                                        "rigid_undecided",
                                                                        "model_falls",
                                                                        "may_slip",
+                                                                       "feet_slip",
                                                                        "gaps_open",
                                                                        "loads_together",
                                                                        "carrier_breaks",

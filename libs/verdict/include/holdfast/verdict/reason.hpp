@@ -47,8 +47,11 @@ enum class ReasonCode : std::uint8_t {
   kRigidUndecided,  ///< Whether they do was not found out.
   kModelFalls,      ///< The model lets it fall, though contact forces exist that would hold it.
   kMaySlip,         ///< A facet's friction is exceeded: its module, |ft|/|fn|, the coefficient.
-  kGapsOpen,        ///< How many, index of the worst, its gap and its limit, mm.
-  kLoadsTogether,   ///< Ratios are factors of all loads together, payloads too.
+  /// Feet slip until friction holds them: how many, the module whose foot then carries most
+  /// sideways, that force in N, and as a share of its pressure.
+  kFeetSlip,
+  kGapsOpen,       ///< How many, index of the worst, its gap and its limit, mm.
+  kLoadsTogether,  ///< Ratios are factors of all loads together, payloads too.
   kCarrierBreaks,  ///< The connection by which a moved module hangs on its carrier: its load ratio.
   kCarrierHolds,   ///< It is the worst of all: its load ratio.
   kInPieces,       ///< The robot is, each of which is judged by itself: how many.
