@@ -151,7 +151,7 @@ void visit(Archive& archive, verdict::Assessment& found) {
           found.lean, found.second_order, found.model, found.is_stable, found.connections,
           found.load_ratio_max, found.worst, found.broken, found.gaps_mm, found.gaps,
           found.weight_factor, found.load_ratio_range, found.load_ratio_change, found.contact_model,
-          found.several, found.equilibrium);
+          found.several, found.equilibrium, found.pieces);
 }
 
 template <class Archive>

@@ -98,6 +98,9 @@ std::optional<Equilibrium> slid(LinearSystem& system, const SlidingContact& sear
     return std::nullopt;
   }
   system.hand_over(result, LinearSystem::Further::kMore);
+  if (result.displacement_low.empty()) {
+    result.alternative = search.before_last();
+  }
   take_contact(system, result);
   return result;
 }

@@ -12,6 +12,7 @@
 
 #include "connection_assessment.hpp"
 #include "decision.hpp"
+#include "pieces/pieces.hpp"
 #include "second_order_check.hpp"
 #include "several_solutions.hpp"
 #include "stability.hpp"
@@ -304,6 +305,9 @@ Assessment assess_rigidly(const model::Robot& robot, bool has_figures) {
 }
 
 Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& options) {
+  if (!robot.pieces().empty()) {
+    return assess_pieces(robot, options);
+  }
   const Situation here(robot);
   Assessment start = look_at_rigid_body(here, options.has_rigid_figures);
   start.is_stable = start.is_stable || options.is_bonded;
@@ -350,6 +354,11 @@ Assessment assess_equilibrium(const model::Robot& robot, Equilibrium equilibrium
   }
   conclude(here, thread_count, assessment);
   return assessment;
+}
+
+int severity(Verdict verdict) {
+  constexpr std::array kSeverities = {0, 2, 3, 1};  // Safe, overload, unstable, undecided.
+  return kSeverities[static_cast<std::size_t>(verdict)];
 }
 
 const char* name(Verdict verdict) {

@@ -38,6 +38,45 @@ std::vector<base::Cell> cells_of(const model::Robot& robot, const Reason& reason
   }
 }
 
+Reason in_whole(Reason reason, std::span<const std::int32_t> modules,
+                std::span<const std::size_t> connections) {
+  const auto connection = [&](std::size_t place) {
+    double& number = reason.numbers[place];
+    number = static_cast<double>(connections[static_cast<std::size_t>(number)]);
+  };
+  const auto module = [&](std::size_t place) {
+    double& number = reason.numbers[place];
+    number = number < 0 ? number : modules[static_cast<std::size_t>(number)];
+  };
+  switch (reason.code) {
+    case ReasonCode::kConnectionsBreak:
+      connection(2);
+      break;
+    case ReasonCode::kHolds:
+      connection(0);
+      break;
+    case ReasonCode::kGapsOpen:
+      connection(1);
+      break;
+    case ReasonCode::kTouchesItself:
+      module(2);
+      module(1);
+      break;
+    case ReasonCode::kFeetSlip:
+    case ReasonCode::kBuckles:
+    case ReasonCode::kCollapses:
+    case ReasonCode::kTouchesFloor:
+      module(1);
+      break;
+    case ReasonCode::kMaySlip:
+      module(0);
+      break;
+    default:
+      break;
+  }
+  return reason;
+}
+
 const char* name(ReasonCode code) {
   static constexpr std::array<const char*, kReasonCodeCount> kNames = {"nothing_to_spare",
                                                                        "topples",

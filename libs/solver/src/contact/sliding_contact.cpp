@@ -187,7 +187,8 @@ Outcome SlidingContact::settle_slips() {
   return Outcome::kNotSettled;
 }
 
-/// Whether no other start leads to other forces of the facets, in the present states.
+/// Whether no other start leads to other forces of the facets, in the present states. Then slips
+/// are found once more, to see how far the first may be off.
 bool SlidingContact::is_only_one(const std::vector<Vec>& displacement) {
   for (std::size_t i = 0; i < slips_.size(); ++i) {
     if (is_friction(i) && std::ranges::find(active_, i) == active_.end()) {
@@ -199,7 +200,14 @@ bool SlidingContact::is_only_one(const std::vector<Vec>& displacement) {
   for (const std::size_t facet : active_) {
     slips.push_back(slips_[facet]);
   }
-  return known && !known->has_others(slips);
+  if (!known || known->has_others(slips)) {
+    return false;
+  }
+  const auto finer = known->solve();
+  for (std::size_t i = 0; finer && i < active_.size(); ++i) {
+    slips_[active_[i]] = (*finer)[i];
+  }
+  return finer.has_value();
 }
 
 /// Puts facets into the states that the displacements prescribe. Returns whether any changed.
@@ -276,10 +284,13 @@ Outcome SlidingContact::run() {
   }
   const std::vector<Vec> displacement = system().facet_displacement();
   const std::vector<std::size_t> doubtful = doubtful_facets(displacement);
+  before_last_ = system().displacement();
   const bool is_certain =
       is_only_one(displacement) && doubtful.size() <= kDoubtfulMax &&
       std::ranges::none_of(doubtful, [&](std::size_t facet) { return has_other_states(facet); });
-  return is_certain && set_slip_loads() ? Outcome::kSettled : Outcome::kNotSettled;
+  return is_certain && set_slip_loads() && !add_those_beyond(system().facet_displacement())
+             ? Outcome::kSettled
+             : Outcome::kNotSettled;
 }
 
 bool SlidingContact::is_any_held() {

@@ -26,6 +26,9 @@ class SlidingContact final : public ContactIteration {
   /// The slips of all facets.
   const std::vector<SlipVector>& slips() const { return slips_; }
 
+  /// The displacements of the slips before the last round, by module: a second answer.
+  const std::vector<Vec>& before_last() const { return before_last_; }
+
   /// What the slips take from the support's force on a facet, at its node in the global frame.
   static Vec slip_force(const LinearSystem& system, std::size_t facet, const SlipVector& slip);
 
@@ -63,6 +66,7 @@ class SlidingContact final : public ContactIteration {
   std::vector<std::size_t> active_;  ///< Facets whose influence is known or wanted.
   /// Displacements of all facets for a unit slip of each active one, by component.
   std::vector<std::vector<Vec>> columns_;
+  std::vector<Vec> before_last_;
 };
 
 }  // namespace holdfast::solver

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -102,6 +103,11 @@ struct Reason {
 /// The cells of a robot that the indices of a reason mean: both ends of a connection, a module, or
 /// none.
 std::vector<base::Cell> cells_of(const model::Robot& robot, const Reason& reason);
+
+/// A reason of a piece of a robot as one of the whole: indices are the piece's, and these lists say
+/// which they are in the whole.
+Reason in_whole(Reason reason, std::span<const std::int32_t> modules,
+                std::span<const std::size_t> connections);
 
 /// The word for a code in JSON reports, such as "connections_break".
 const char* name(ReasonCode code);
