@@ -167,9 +167,13 @@ std::optional<std::string> Robot::take(const RobotSpec& spec, int thread_count, 
 }
 
 std::optional<std::string> Robot::take_pieces(const RobotSpec& spec, int thread_count) {
+  auto apart = find_connection_fault(connections(), modules_, spec.existing.size());
+  if (!apart) {
+    return std::nullopt;
+  }
   const std::vector<std::vector<std::int32_t>> lists = pieces_of(connections(), modules_.size());
   if (lists.size() < 2) {
-    return std::nullopt;
+    return apart;
   }
   if (auto fault = find_loose_fault(lists, modules_)) {
     return fault;

@@ -35,8 +35,9 @@ constexpr std::size_t kOneFreeMax = 32;
 /// Steps of the coefficient of friction on the way from where nothing slips, or from none.
 constexpr int kFrictionSteps = 12;
 
-/// Products of numbers that sweeps may take: a quarter of a second.
-constexpr std::size_t kSweepWorkMax = 100'000'000;
+/// Sweeps, and products of numbers in them, that may be tried: a tenth of a second.
+constexpr int kSweepMax = 1 << 14;
+constexpr std::size_t kSweepWorkMax = 30'000'000;
 
 struct Disc {
   std::array<double, 2> nearest{};    ///< The nearest point of the disc,
@@ -240,7 +241,7 @@ std::optional<std::vector<double>> SlidingFeet::from_no_friction() const {
 std::optional<std::vector<double>> SlidingFeet::from_sweeps() const {
   std::vector<double> slip(size(), 0.0);
   std::size_t work = 0;
-  for (int sweep = 1; work < kSweepWorkMax; ++sweep) {
+  for (int sweep = 1; sweep <= kSweepMax && work < kSweepWorkMax; ++sweep) {
     for (std::size_t i = 0; i < count(); ++i) {
       move_one(i, slip);
     }

@@ -126,9 +126,9 @@ void join_connections(const model::Robot& robot, const std::vector<JudgedPiece>&
     whole.load_ratio_range.high =
         std::max(whole.load_ratio_range.high, found.load_ratio_range.high);
     whole.load_ratio_change = std::max(whole.load_ratio_change, found.load_ratio_change);
-    if (found.worst && *found.load_ratio_max > worst) {
+    if (*found.load_ratio_max > worst) {
       worst = *found.load_ratio_max;
-      whole.worst = one.connections[*found.worst];
+      whole.worst = found.worst ? std::optional(one.connections[*found.worst]) : std::nullopt;
       whole.weight_factor = found.weight_factor;
     }
   }
