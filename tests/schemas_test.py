@@ -199,6 +199,7 @@ ROBOTS = {
                          steps=[{'attach': [[2, 0, 1]]}]),
     'row': structure([0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0]),
     'shifted': structure([1, 0, 0], [2, 0, 0], [3, 0, 0], [4, 0, 0]),
+    'pieces': structure([0, 0, 0], [0, 0, 1], [5, 0, 0], [5, 0, 1], [6, 0, 1]),
     'leaning': structure([0, 0, 0], [0, 0, 1], [1, 0, 1], [2, 0, 1]),
     'grows': structure([0, 0, 0], [0, 0, 1], [1, 0, 0], planned=[[0, 1, 0]],
                        later_steps=[[[1, 1, 0]]], steps=[{'detach': [[1, 1, 0]]}]),
@@ -230,6 +231,7 @@ def commands(scenarios, tests):
                 for part in ('modules', 'feet'))
     yield ['check', f'{tests}/physics/two_paths.json']
     yield ['check', 'slender.json', '--connections', '3']
+    yield ['check', 'pieces.json']
     yield ['steps', f'{plan}/walk_over_beam.json']
     yield ['steps', 'walk_to_topple.json', '--until-unsafe']
     yield ['steps', 'grows.json', '--scatter', '10%', '--probability', '0.9', '--lose-one']

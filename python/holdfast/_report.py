@@ -141,6 +141,18 @@ class Report(Judged, Drawn):
         return self._held.facet_forces
 
     @property
+    def pieces(self) -> list[dict[str, Any]]:
+        """Each piece of a robot that is in several, the worst first; else empty.
+
+        Keys: ``modules`` (how many), ``first`` (the cell of one), ``verdict``, ``load_ratio_max``
+        and ``margin_mm``, None where they are not known. Each is judged by itself; the report's
+        verdict is the worst one's, its loads are those of all.
+        """
+        return [dict(zip(('modules', 'first', 'verdict', 'load_ratio_max', 'margin_mm'),
+                         (count, first, Verdict(verdict), ratio, margin)))
+                for count, first, verdict, ratio, margin in self._held.pieces]
+
+    @property
     def contacts(self) -> Table:
         """How each facet touches: ``is_pressed``, ``tilt_x``, ``tilt_y`` (signs; Eqs. 9-12)."""
         return self._held.contacts

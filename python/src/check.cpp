@@ -35,6 +35,11 @@ SharedCheck check_shared(const SharedStructure& structure, const py::handle& thr
   if (is_deformed_wanted && is_proof_wanted) {
     throw Error("deformed and proof do not go together: a proof is one of linear theory");
   }
+  if (is_deformed_wanted || is_proof_wanted || is_limit_wanted) {
+    expect_one_piece(*structure, is_deformed_wanted ? "deformed"
+                                 : is_proof_wanted  ? "proof"
+                                                    : "limit");
+  }
   options.is_deformed_wanted = is_deformed_wanted;
   options.factor_max = number_of(factor_max, "up_to", 1, 1e6);
   options.is_limit_wanted = is_limit_wanted;
@@ -105,6 +110,17 @@ py::array ground_forces(const SharedCheck& check) {
   py::array array(pairs_of_vectors("force_n", "moment_nmm"), list.size(), list.data());
   py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
   return array;
+}
+
+/// What is known of each piece of a robot that is in several.
+py::list pieces(const CheckedStructure& check) {
+  py::list out;
+  for (const verdict::PieceAnswer& piece : check.result.assessment.pieces) {
+    out.append(py::make_tuple(piece.module_count,
+                              py::make_tuple(piece.first.x, piece.first.y, piece.first.z),
+                              verdict::name(piece.verdict), piece.load_ratio_max, piece.margin_mm));
+  }
+  return out;
 }
 
 /// The contacts of all facets.
@@ -260,6 +276,7 @@ void add_arrays(py::class_<CheckedStructure, std::shared_ptr<CheckedStructure>>&
   type.def_property_readonly("connections", &connections)
       .def_property_readonly("displacements", &displacements)
       .def_property_readonly("facet_forces", &facet_forces)
+      .def_property_readonly("pieces", &pieces)
       .def_property_readonly("ground_forces", &ground_forces)
       .def_property_readonly("contacts", &contacts)
       .def_property_readonly("limits", &limits);

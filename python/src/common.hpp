@@ -51,6 +51,14 @@ T take(base::Result<T> result, std::string_view file = {}) {
 /// Raises holdfast.Error if there is an error.
 void take(const std::optional<base::Error>& error, std::string_view file);
 
+/// Refuses a robot that is in several pieces, for what knows one.
+inline void expect_one_piece(const Structure& structure, std::string_view what) {
+  if (const std::size_t count = structure.robot.pieces().size(); count > 0) {
+    throw Error("the robot is in " + std::to_string(count) + " pieces, and " + std::string(what) +
+                " is for robots of one");
+  }
+}
+
 /// Robots and reports are never changed once made, so many may share one.
 using SharedStructure = std::shared_ptr<const Structure>;
 

@@ -138,6 +138,7 @@ std::shared_ptr<Run> simulate_robot(const SharedStructure& structure, const py::
                                     const py::handle& method_name, const py::handle& seed,
                                     const py::dict& noise, const py::handle& events,
                                     py::object progress) {
+  expect_one_piece(*structure, "simulate()");
   sim::SimulationOptions options;
   const std::string link = utf8_of(link_name, "link");
   const std::string method = utf8_of(method_name, "method");
@@ -185,6 +186,7 @@ std::shared_ptr<Run> emulate_robot(const SharedStructure& structure, const py::h
                                    const py::handle& seed, const py::handle& seconds_max,
                                    const py::handle& events, py::object progress) {
   constexpr double kTicks = 1e6;
+  expect_one_piece(*structure, "emulate()");
   const double seconds = number_of(seconds_max, "seconds", 0.001, 3600);
   const std::string image = path_of(image_path);
   emulator::EmulationOptions options{.seed = seed_of(seed)};

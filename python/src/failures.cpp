@@ -55,6 +55,7 @@ std::string reliability(const SharedCheck& check, const py::object& scatter, dou
     }
   }
   const Structure& structure = *check->structure;
+  expect_one_piece(structure, "reliability()");
   const auto how = find_scatter(structure, wish);
   if (!how) {
     throw Error(
@@ -70,6 +71,7 @@ std::string reliability(const SharedCheck& check, const py::object& scatter, dou
 std::string lose_one(const SharedStructure& structure, const std::vector<std::string>& parts,
                      double seconds, const py::handle& threads, const py::handle& memory,
                      bool is_bonded, py::object progress) {
+  expect_one_piece(*structure, "lose_one()");
   LoseOneOptions options;
   options.check = check_options(threads, memory, is_bonded);
   options.seconds_max = seconds;
@@ -102,6 +104,7 @@ std::string fit(const std::string& text, const std::string& folder) {
 
 std::string cascade(const SharedStructure& structure, const py::handle& threads,
                     const py::handle& memory, bool is_bonded, py::object progress) {
+  expect_one_piece(*structure, "cascade()");
   const CheckOptions options = check_options(threads, memory, is_bonded);
   Watch watch(std::move(progress));
   const plan::Cascade found = without_gil(watch, [&] {

@@ -141,7 +141,7 @@ template <class Archive>
 void visit(Archive& archive, Equilibrium& found) {
   visit_solution(archive, found);
   archive(found.outcome, found.law, found.others, found.facet_force, found.open_but_held_count,
-          found.free_gamma, found.attempts, found.method, found.precision, found.steps,
+          found.slip, found.free_gamma, found.attempts, found.method, found.precision, found.steps,
           found.iteration_count, found.made_column_count);
 }
 
@@ -151,7 +151,7 @@ void visit(Archive& archive, verdict::Assessment& found) {
           found.lean, found.second_order, found.model, found.is_stable, found.connections,
           found.load_ratio_max, found.worst, found.broken, found.gaps_mm, found.gaps,
           found.weight_factor, found.load_ratio_range, found.load_ratio_change, found.contact_model,
-          found.several, found.equilibrium);
+          found.several, found.equilibrium, found.pieces);
 }
 
 template <class Archive>

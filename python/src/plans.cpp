@@ -67,6 +67,7 @@ JudgementRow row_at(const base::Cell& cell, const Judged& judged) {
 
 std::shared_ptr<Places> next(const SharedStructure& structure, const py::handle& threads,
                              const py::handle& memory, bool is_bonded, py::object progress) {
+  expect_one_piece(*structure, "next()");
   Watch watch(std::move(progress));
   NextOptions options{.check = check_options(threads, memory, is_bonded)};
   options.progress = [&](std::size_t done, std::size_t count) { watch(done, count); };
@@ -85,6 +86,7 @@ py::array candidates(const Places& places) {
 /// Returns by kind the changes that do and how many were judged, and the factor of strength.
 py::dict remedies(const SharedCheck& check, const py::handle& threads, const py::handle& memory,
                   bool is_bonded, py::object progress) {
+  expect_one_piece(*check->structure, "remedies()");
   const CheckOptions options = check_options(threads, memory, is_bonded);
   Watch watch(std::move(progress));
   const plan::Remedies found = without_gil(watch, [&] {

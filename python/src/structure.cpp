@@ -24,7 +24,8 @@ SharedStructure share(base::Result<Structure> made, std::string_view file = {}) 
 io::ReadOptions reading(const py::dict& given) {
   const py::handle lattice = given["lattice"];
   io::ReadOptions options{.robot = utf8_of(given["robot"], "robot"),
-                          .allow_unknown = given["allow_unknown"].cast<bool>()};
+                          .allow_unknown = given["allow_unknown"].cast<bool>(),
+                          .may_be_in_pieces = true};
   if (const py::handle supports = given["supports"]; !supports.is_none()) {
     options.support = take(io::find_support_level(py::str(supports).cast<std::string>()));
   }
@@ -99,6 +100,7 @@ SharedStructure make(const py::handle& cells, const py::handle& planned, const p
   if (const std::string json = utf8_of(head, "options"); !json.empty()) {
     document = take(io::read_json(json)).document;
   }
+  document.may_be_in_pieces = true;
   const auto existing = cells_of(cells, "cells");
   const auto to_come = planned.is_none() ? std::vector<base::Cell>{} : cells_of(planned, "planned");
   set_modules(document, existing, to_come);

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Robots that are moved, turned, put together, and robots as graphs."""
 import json
+import pickle
 
 import networkx
 import numpy as np
@@ -95,8 +96,35 @@ def test_a_union_says_what_it_cannot_be():
         robot.union(robot.translated([1, 0, 0]))
     with pytest.raises(holdfast.Error, match='with the same material'):
         robot.union(holdfast.Robot([[2, 0, 0]], material={'mass_kg': 1}))
+
+
+def test_a_union_may_be_in_pieces():
+    robot = holdfast.Robot([[0, 0, 0], [0, 0, 1], [1, 0, 1]])
+    report = robot.union(robot.translated([5, 0, 0])).check()
+    assert [(piece['modules'], piece['first']) for piece in report.pieces] == [
+        (3, (0, 0, 0)), (3, (5, 0, 0))]
+    assert {piece['verdict'] for piece in report.pieces} == {robot.check().verdict}
+    assert report.load_ratio_max == robot.check().load_ratio_max
+    assert robot.check().pieces == []
+    copy = pickle.loads(pickle.dumps(report))
+    assert copy.pieces == report.pieces and copy.text() == report.text()
+    with pytest.raises(holdfast.Error, match='nothing holds 1 of its 2 pieces'):
+        holdfast.Robot([[0, 0, 0], [0, 0, 1], [5, 0, 1], [6, 0, 1]])
+
+
+def test_an_order_is_of_one_piece():
     with pytest.raises(holdfast.Error, match='not connected'):
-        robot.union(robot.translated([5, 0, 0]))
+        holdfast.order(holdfast.Robot([[0, 0, 0], [0, 0, 1], [5, 0, 0]]))
+
+
+@pytest.mark.parametrize('what', ['next', 'simulate', 'lose_one', 'cascade'])
+def test_pieces_are_refused_by_name(what):
+    robot = holdfast.Robot([[0, 0, 0], [0, 0, 1], [5, 0, 0]])
+    with pytest.raises(holdfast.Error, match='in 2 pieces'):
+        getattr(robot, what)()
+    for wish in ('proof', 'limit', 'deformed'):
+        with pytest.raises(holdfast.Error, match=f'in 2 pieces, and {wish} is for robots of one'):
+            robot.check(**{wish: True})
 
 
 def test_a_robot_contains_cells():

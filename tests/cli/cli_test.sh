@@ -629,6 +629,25 @@ for arguments in "check catoms_and_one.json" "steps catoms_and_one.json" "next c
   expect_line err 'not connected: .*; the lattice is cubic, in face-centred it is connected'
 done
 
+# Pieces that stand are judged one by one, by check alone and by what knows of pieces.
+json '"modules": [[0,0,0],[0,0,1],[5,0,0],[5,0,1],[6,0,1],[7,0,1]]' >pieces.json
+expect_exit 1 check pieces.json --json pieces_report.json --csv pieces.csv --svg pieces.svg
+expect_line out '^  pieces      unstable  .* margin -10.00 mm  4 modules with \(5,0,0\)$'
+expect_line out '^              safe      .* 2 modules with \(0,0,0\)$'
+for option in --prove --limit --deformed --remedies --lose-one --cascade '--scatter 10%'; do
+  # shellcheck disable=SC2086
+  expect_exit 65 check pieces.json $option
+  expect_line err 'the robot is in 2 pieces, and .* is for robots of one'
+done
+for arguments in "next pieces.json" "order pieces.json" "simulate pieces.json" "view pieces.json" \
+  "move pieces.json pieces.json"; do
+  # shellcheck disable=SC2086
+  expect_exit 65 $arguments
+  expect_line err 'not connected: 2 of 6 modules .* piece, 4 with \(5,0,0\): 2 with \(0,0,0\)'
+done
+json '"modules": [[0,0,0],[0,0,1],[5,0,1],[6,0,1]]' >hovering.json
+expect_refusal 'not connected: nothing holds 1 of its 2 pieces: 2 with \(5,0,1\)' hovering.json
+
 # A list of cells is a robot, to every command; its lowest layer stands, or the one that is said.
 printf 'x,y,z\n0,0,5\n0,0,6\n1,0,6\n' >list.csv
 for command in check next simulate order; do

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <iterator>
 #include <memory>
 
 #include "commands.hpp"
@@ -92,6 +94,10 @@ class CheckRun {
       return;
     }
     Structure structure = std::move(loaded).value();
+    if (const auto error = find_pieces_fault(structure)) {
+      report_error(*error, file);
+      return;
+    }
     const auto scatter = find_scatter(structure, read_scatter(options_.scatter));
     const bool is_document_needed = !options_.html.empty() || options_.are_remedies_wanted ||
                                     options_.lose_one.is_wanted || options_.is_cascade_wanted ||
@@ -120,6 +126,31 @@ class CheckRun {
                         });
     });
     write_files(structure, result, more);
+  }
+
+  /// Refuses options that are for robots of one piece.
+  std::optional<base::Error> find_pieces_fault(const Structure& structure) const {
+    const std::pair<const char*, bool> wishes[] = {
+        {"--prove", options_.is_proof_wanted},
+        {"--certificate", !options_.certificate.empty()},
+        {"--limit", options_.is_limit_wanted},
+        {"--deformed", options_.is_deformed_wanted},
+        {"--remedies", options_.are_remedies_wanted},
+        {"--lose-one", options_.lose_one.is_wanted},
+        {"--cascade", options_.is_cascade_wanted},
+        {"--html", !options_.html.empty()},
+        {"how sure it is where strengths or masses scatter",
+         find_scatter(structure, read_scatter(options_.scatter)).has_value()}};
+    const auto* const wish =
+        std::ranges::find_if(wishes, [](const auto& one) { return one.second; });
+    if (structure.robot.pieces().empty() || wish == std::end(wishes)) {
+      return std::nullopt;
+    }
+    return base::Error{.code = base::ErrorCode::kBadInput,
+                       .message = fmt::format("the robot is in {} pieces, and {} is for robots of "
+                                              "one",
+                                              structure.robot.pieces().size(), wish->first),
+                       .where = {}};
   }
 
   /// What options of their own files add to the report.
@@ -379,7 +410,8 @@ class CheckRun {
   Progress progress_;
 };
 
-int run(const CheckArguments& options) {
+int run(CheckArguments options) {
+  options.reading.may_be_in_pieces = true;
   if (options.files.size() > 1 &&
       !(options.csv.empty() && options.figure.path.empty() && options.vtk.empty() &&
         options.html.empty() && options.certificate.empty())) {

@@ -88,6 +88,7 @@ base::Result<ChangedStructure> with_changes(const Structure& structure,
       warnings.push_back(std::move(*note));
     }
   }
+  document.may_be_in_pieces = false;  // Modules that compute a verdict are one robot.
   auto robot = io::make_robot(document);
   if (!robot) {
     return robot.error();

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <thread>
 
+#include "holdfast/base/check.hpp"
 #include "holdfast/file_ending.hpp"
 #include "holdfast/host/team.hpp"
 #include "holdfast/limit/robot.hpp"
@@ -185,6 +186,8 @@ limit::LimitLoad find_limit(const model::Robot& robot, const verdict::Assessment
 
 CheckResult check(const model::Robot& robot, const CheckOptions& options) {
   using solver::SecondOrderWish;
+  HOLDFAST_CHECK(robot.pieces().empty() || !(options.is_proof_wanted || options.is_limit_wanted ||
+                                             options.is_deformed_wanted));
   const auto start = std::chrono::steady_clock::now();
   const auto passed = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

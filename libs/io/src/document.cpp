@@ -114,7 +114,13 @@ base::Result<ReadDocument> read_any(std::string_view text, const ReadOptions& op
 }  // namespace
 
 base::Result<ReadDocument> read_document(std::string_view text, const ReadOptions& options) {
-  return with_factor(with_support(read_any(text, options), options), options);
+  auto read = with_factor(with_support(read_any(text, options), options), options);
+  if (!read) {
+    return read;
+  }
+  ReadDocument document = std::move(read).value();
+  document.document.may_be_in_pieces = options.may_be_in_pieces;
+  return document;
 }
 
 }  // namespace holdfast::io

@@ -295,6 +295,13 @@ std::string reason_text(const verdict::Reason& reason, std::span<const base::Cel
           "a facet of {} may slip: its sideways force is {} of its pressure, its friction {}; "
           "other contact forces may hold the robot, so nothing is certain",
           model::text(cells[0]), beside_one(n[1], 4), n[2]);
+    case ReasonCode::kFeetSlip:
+      return fmt::format(
+          "{} until friction holds {}: the foot of {} then carries {:.4g} N sideways, {:.4g} of "
+          "its "
+          "pressure, by Coulomb's law for loads that grow from zero",
+          n[0] == 1 ? "one foot slips" : fmt::format("{} feet slip", n[0]),
+          n[0] == 1 ? "it" : "them", model::text(cells[0]), n[2], n[3]);
     case ReasonCode::kGapsOpen:
       return fmt::format(
           "warning: {} so far that contacts of power and data part; the worst, {}, by {:.3g} mm at "

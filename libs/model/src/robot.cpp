@@ -117,6 +117,7 @@ base::Result<Robot> Robot::create(const RobotSpec& spec, int thread_count) {
   Robot robot(spec);
   auto fault = robot.take(spec, thread_count, Extent::kWhole);
   fault = fault ? fault : find_support_fault(robot, spec);
+  fault = fault || !spec.may_be_in_pieces ? fault : robot.take_pieces(spec, thread_count);
   if (fault) {
     return base::bad_input(*fault);
   }
@@ -153,7 +154,7 @@ std::optional<std::string> Robot::take(const RobotSpec& spec, int thread_count, 
     connect(index, team);
     fault = spec.released.empty() ? std::nullopt : release(spec.released, index, team);
   }
-  if (!fault && extent == Extent::kWhole) {
+  if (!fault && extent == Extent::kWhole && !spec.may_be_in_pieces) {
     fault = find_connection_fault(connections(), modules_, spec.existing.size());
     if (fault && released_count_ > 0) {
       *fault += fmt::format("; the faces of {} open pairs do not count", released_count_);
@@ -163,6 +164,43 @@ std::optional<std::string> Robot::take(const RobotSpec& spec, int thread_count, 
   fault = fault ? fault : take_kinds(spec, index);
   fault = fault ? fault : take_own_connectors(spec, index);
   return fault ? fault : take_loads(spec, index);
+}
+
+std::optional<std::string> Robot::take_pieces(const RobotSpec& spec, int thread_count) {
+  auto apart = find_connection_fault(connections(), modules_, spec.existing.size());
+  if (!apart) {
+    return std::nullopt;
+  }
+  const std::vector<std::vector<std::int32_t>> lists = pieces_of(connections(), modules_.size());
+  if (lists.size() < 2) {
+    return apart;
+  }
+  if (auto fault = find_loose_fault(lists, modules_)) {
+    return fault;
+  }
+  std::vector<RobotPiece> pieces;
+  for (const std::vector<std::int32_t>& list : lists) {
+    RobotSpec part = spec;
+    part.may_be_in_pieces = false;
+    part.existing.clear();
+    part.planned.clear();
+    for (const std::int32_t i : list) {
+      const Module& module = modules_[base::at(i)];
+      (module.is_planned ? part.planned : part.existing).push_back(module.cell);
+    }
+    forget_absent(part);
+    auto piece = Robot::create(part, thread_count);
+    if (!piece) {
+      return piece.error().message;
+    }
+    pieces.push_back({.robot = std::move(piece).value(), .modules = list});
+  }
+  pieces_ = std::make_shared<const std::vector<RobotPiece>>(std::move(pieces));
+  return std::nullopt;
+}
+
+std::span<const RobotPiece> Robot::pieces() const {
+  return pieces_ ? std::span<const RobotPiece>(*pieces_) : std::span<const RobotPiece>();
 }
 
 void Robot::add_modules(const RobotSpec& spec) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <functional>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -213,6 +214,44 @@ class Parts {
   std::vector<std::int32_t> parent_;
 };
 
+/// The lists of the first `count` modules that are together, each ascending, the largest first.
+std::vector<std::vector<std::int32_t>> lists_of(Parts& parts, std::size_t count) {
+  std::vector<std::int32_t> place(count, -1);
+  std::vector<std::vector<std::int32_t>> lists;
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(count); ++i) {
+    std::int32_t& here = place[base::at(parts.find(i))];
+    if (here < 0) {
+      here = static_cast<std::int32_t>(lists.size());
+      lists.emplace_back();
+    }
+    lists[base::at(here)].push_back(i);
+  }
+  std::ranges::stable_sort(lists, std::greater<>(), &std::vector<std::int32_t>::size);
+  return lists;
+}
+
+/// Names a piece by its first module.
+std::string text_of(const std::vector<std::int32_t>& piece, std::span<const Module> modules) {
+  const std::string cell = text(modules[base::at(piece.front())].cell);
+  return piece.size() == 1 ? cell : fmt::format("{} with {}", piece.size(), cell);
+}
+
+/// Names pieces, the first few of them.
+std::string list_text(const std::vector<std::vector<std::int32_t>>& pieces,
+                      std::span<const Module> modules) {
+  constexpr std::size_t kNamed = 5;
+  std::string list;
+  for (std::size_t i = 0; i < std::min(pieces.size(), kNamed); ++i) {
+    list += (i > 0 ? ", " : "") + text_of(pieces[i], modules);
+  }
+  return pieces.size() > kNamed ? list + fmt::format(" and {} more", pieces.size() - kNamed) : list;
+}
+
+std::string planned_apart(const Cell& cell) {
+  return fmt::format("the planned cell {} touches neither the robot nor a planned cell that does",
+                     text(cell));
+}
+
 }  // namespace
 
 std::optional<std::string> find_number_fault(const RobotSpec& spec) {
@@ -230,31 +269,41 @@ std::optional<std::string> find_number_fault(const RobotSpec& spec) {
   return fault ? fault : find_general_fault(spec);
 }
 
+std::vector<std::vector<std::int32_t>> pieces_of(const Connections& connections,
+                                                 std::size_t module_count) {
+  Parts parts(module_count);
+  for (const Connection& pair : connections) {
+    parts.join(pair.a, pair.b);
+  }
+  return lists_of(parts, module_count);
+}
+
 std::optional<std::string> find_connection_fault(const Connections& connections,
                                                  std::span<const Module> modules,
                                                  std::size_t existing_count) {
   Parts parts(modules.size());
-  const auto is_loose = [&](std::size_t i) {
-    return parts.find(static_cast<std::int32_t>(i)) != 0;
-  };
   const auto first_planned = static_cast<std::int32_t>(existing_count);
   for (const Connection& pair : connections) {
     if (pair.a < first_planned && pair.b < first_planned) {
       parts.join(pair.a, pair.b);
     }
   }
-  std::size_t loose_count = 0;
-  std::size_t loose = 0;
-  for (std::size_t i = existing_count; i-- > 0;) {
-    if (is_loose(i)) {
-      loose = i;
-      ++loose_count;
-    }
+  const auto is_loose = [&](std::size_t i) {
+    return parts.find(static_cast<std::int32_t>(i)) != 0;
+  };
+  bool is_any_loose = false;
+  for (std::size_t i = 0; i < existing_count && !is_any_loose; ++i) {
+    is_any_loose = is_loose(i);
   }
-  if (loose_count > 0) {
-    return fmt::format("the robot is not connected: {} of {} modules, {}{} not connected to {}",
-                       loose_count, existing_count, text(modules[loose].cell),
-                       loose_count == 1 ? ", is" : " among them, are", text(modules[0].cell));
+  if (is_any_loose) {
+    std::vector<std::vector<std::int32_t>> pieces = lists_of(parts, existing_count);
+    const std::vector<std::int32_t> largest = std::move(pieces.front());
+    pieces.erase(pieces.begin());
+    return fmt::format(
+        "the robot is not connected: {} of {} modules are not connected to the largest piece, {}: "
+        "{}",
+        existing_count - largest.size(), existing_count, text_of(largest, modules),
+        list_text(pieces, modules));
   }
   for (const Connection& pair : connections) {
     if (pair.a >= first_planned || pair.b >= first_planned) {
@@ -263,12 +312,31 @@ std::optional<std::string> find_connection_fault(const Connections& connections,
   }
   for (std::size_t i = existing_count; i < modules.size(); ++i) {
     if (is_loose(i)) {
-      return fmt::format(
-          "the planned cell {} touches neither the robot nor a planned cell that does",
-          text(modules[i].cell));
+      return planned_apart(modules[i].cell);
     }
   }
   return std::nullopt;
+}
+
+std::optional<std::string> find_loose_fault(const std::vector<std::vector<std::int32_t>>& pieces,
+                                            std::span<const Module> modules) {
+  std::vector<std::vector<std::int32_t>> loose;
+  std::optional<std::string> fault;
+  for (const std::vector<std::int32_t>& piece : pieces) {
+    const auto existing = [&](std::int32_t i) { return !modules[base::at(i)].is_planned; };
+    if (std::ranges::none_of(piece, existing)) {
+      fault = fault ? fault : planned_apart(modules[base::at(piece.front())].cell);
+    } else if (std::ranges::none_of(piece, [&](std::int32_t i) {
+                 return existing(i) && modules[base::at(i)].support != Support::kNone;
+               })) {
+      loose.push_back(piece);
+    }
+  }
+  if (!loose.empty()) {
+    fault = fmt::format("the robot is not connected: nothing holds {} of its {} pieces: {}",
+                        loose.size(), pieces.size(), list_text(loose, modules));
+  }
+  return fault;
 }
 
 namespace {

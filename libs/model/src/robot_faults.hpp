@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "holdfast/model/robot.hpp"
 
@@ -20,6 +22,14 @@ std::optional<std::string> find_number_fault(const RobotSpec& spec);
 std::optional<std::string> find_connection_fault(const Connections& connections,
                                                  std::span<const Module> modules,
                                                  std::size_t existing_count);
+
+/// The modules that are connected with each other, by ascending index; the largest piece first.
+std::vector<std::vector<std::int32_t>> pieces_of(const Connections& connections,
+                                                 std::size_t module_count);
+
+/// Finds pieces of a robot that nothing holds, or that are planned only.
+std::optional<std::string> find_loose_fault(const std::vector<std::vector<std::int32_t>>& pieces,
+                                            std::span<const Module> modules);
 
 /// Finds a fault in what holds the robot.
 std::optional<std::string> find_support_fault(const Robot& robot, const RobotSpec& spec);

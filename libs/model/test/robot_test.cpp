@@ -179,7 +179,7 @@ TEST(Robot, releases_only_connections_and_each_once) {
   expect_error({.existing = row, .released = {first, {row[1], row[0]}}},
                {"(1,0,0)-(0,0,0) is released twice"});
   expect_error({.existing = row, .released = {first}},
-               {"not connected: 2 of 3 modules", "faces of 1 open pairs do not count"});
+               {"not connected: 1 of 3 modules", "faces of 1 open pairs do not count"});
   expect_error({.existing = {row[0]}, .planned = {row[1]}, .released = {first}},
                {"planned cell (1,0,0)", "open pairs do not count"});
   // A released neighbour is still in the way.
@@ -261,7 +261,7 @@ TEST(Robot, has_one_module_in_a_cell) {
 
 TEST(Robot, is_connected_without_its_planned_modules) {
   expect_error({.existing = {{0, 0, 0}, {2, 0, 0}, {3, 0, 0}}},
-               {"not connected", "2 of 3 modules", "(2,0,0)", "not connected to (0,0,0)"});
+               {"not connected", "1 of 3 modules", "largest piece, 2 with (2,0,0): (0,0,0)"});
   expect_error({.existing = {{0, 0, 0}, {2, 0, 0}}, .planned = {{1, 0, 0}}}, {"not connected"});
   expect_error({.existing = {{0, 0, 0}, {1, 1, 0}}}, {"not connected", "(1,1,0)"});
 }

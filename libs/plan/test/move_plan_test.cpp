@@ -48,11 +48,14 @@ TEST(MovePlan, a_module_slides_along_a_row_and_turns_around_its_end) {
 }
 
 TEST(MovePlan, an_undecided_target_proves_nothing) {
-  // It stands by the rigid body, and by the elastic solution its feet may slip.
+  // It stands by the rigid body; by the elastic solution its feet may slip, beside a wall.
   MoveTask task = task_of({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 0, 1}, {1, 0, 1}, {2, 0, 1}},
                           {{0, 0, 0}, {2, 0, 0}, {0, 0, 1}, {1, 0, 1}, {2, 0, 1}, {2, 0, 2}});
   task.start.floor.friction = 0.01;
   task.target.floor.friction = 0.01;
+  const model::Obstacle wall = {
+      .from = {}, .to = {}, .cells = {{3, 0, 2}}, .touch = {.friction = 0.01}};
+  task.start.obstacles = task.target.obstacles = {wall};
   const MovePlan plan = plan_of(task);
   EXPECT_EQ(plan.outcome, MoveOutcome::kNotFound);
   EXPECT_EQ(plan.undecided_count, 1U);

@@ -54,7 +54,7 @@ struct Expected {
   double margin = 1e300;
 };
 
-int severity(Verdict verdict) {
+int badness(Verdict verdict) {
   return verdict == Verdict::kUnstable   ? 3
          : verdict == Verdict::kOverload ? 2
          : verdict == Verdict::kSafe     ? 0
@@ -67,7 +67,7 @@ Expected expected_of(const std::vector<Scene>& scenes) {
     for (const model::RobotSpec& piece : scene.pieces) {
       const model::Robot robot = model::Robot::create(piece).value();
       const verdict::Assessment checked = verdict::assess(robot);
-      all.severity = std::max(all.severity, severity(checked.verdict));
+      all.severity = std::max(all.severity, badness(checked.verdict));
       all.margin = std::min(all.margin, checked.simplified.margin_mm.value_or(1e300));
       if (checked.is_stable) {
         all.ratio = std::max(all.ratio, checked.load_ratio_max.value_or(-1e300));
@@ -91,7 +91,7 @@ void compare(const model::RobotSpec& start, const std::vector<model::Step>& step
       const auto scenes = find_scenes(robot, steps[i], transition, static_cast<Stage>(k));
       const Expected expected = expected_of(scenes.value());
       const StageJudgement& stage = judged.value().steps[i].stages[static_cast<std::size_t>(k)];
-      EXPECT_EQ(severity(stage.verdict), expected.severity) << i << ' ' << k;
+      EXPECT_EQ(badness(stage.verdict), expected.severity) << i << ' ' << k;
       EXPECT_NEAR(stage.margin_mm.value_or(1e300), expected.margin, 1e-9);
       if (expected.severity == 0 || expected.severity == 2) {
         EXPECT_NEAR(stage.load_ratio_max.value_or(-1e300), expected.ratio,

@@ -3,10 +3,12 @@
 #include "holdfast/solver/equilibrium.hpp"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <utility>
 
 #include "contact/regularised_contact.hpp"
+#include "contact/sliding_contact.hpp"
 #include "contact/unilateral_contact.hpp"
 #include "system_choice.hpp"
 
@@ -32,8 +34,12 @@ void take_contact(const LinearSystem& system, Equilibrium& result) {
   result.contact.clear();
   result.facet_force.clear();
   const FacetLaw<double> law = system.law().with_gamma(result.gamma);
-  for (const FacetState& facet : system.facets()) {
+  for (std::size_t i = 0; i < system.facets().size(); ++i) {
+    const FacetState& facet = system.facets()[i];
     auto force = law.force(facet, result.displacement[facet.module]);
+    if (!result.slip.empty()) {
+      base::add_times(force, -1.0, SlidingContact::slip_force(system, i, result.slip[i]));
+    }
     for (double& component : force) {
       component = -component;
     }
@@ -81,22 +87,51 @@ void compare_with_free_facets(UnilateralContact& contact, Equilibrium& result) {
   result.energy_error = std::max(result.energy_error, free->energy_error);
 }
 
+/// The equilibrium of slips that have settled; none if its last digits are not to be had.
+std::optional<Equilibrium> slid(LinearSystem& system, const SlidingContact& search,
+                                const Equilibrium& before) {
+  Equilibrium result;
+  result.law = before.law;
+  result.outcome = Outcome::kSettled;
+  result.slip = search.slips();
+  if (!system.refine(result)) {
+    return std::nullopt;
+  }
+  system.hand_over(result, LinearSystem::Further::kMore);
+  if (result.displacement_low.empty()) {
+    result.alternative = search.before_last();
+  }
+  take_contact(system, result);
+  return result;
+}
+
 /// Puts all facets into their states by the exact law, without weak springs where a factorization
-/// needs none. Facets that all stick are so by either law.
-void take_states(LinearSystem& system, const std::vector<mechanics::ContactState>& contact) {
+/// needs none. Facets that all stick are so by either law. Those that slip are
+/// held by nothing, but for one where all do: how far they go together changes no force.
+void take_states(LinearSystem& system, const Equilibrium& settled) {
+  const std::vector<mechanics::ContactState>& contact = settled.contact;
   constexpr double kWeakSprings = 1e-6;
   const auto is_stuck = [](const auto& state) { return state == mechanics::kStuck; };
   const bool is_known = std::ranges::all_of(system.facets(), [&](const FacetState& facet) {
     return is_stuck(facet.state) && facet.is_held;
   });
   const bool is_all_stuck = std::ranges::all_of(contact, is_stuck);
-  if (is_known && is_all_stuck && system.report().solve_count > 0) {
+  if (is_known && is_all_stuck && settled.slip.empty() && system.report().solve_count > 0) {
     return;
   }
   const bool has_springs = !system.is_exact() && !is_all_stuck;
   system.set_law({.law = ContactLaw::kUnilateral, .gamma = has_springs ? kWeakSprings : 0.0});
+  const auto slips = [&](std::size_t i) {
+    return !settled.slip.empty() && settled.slip[i] != std::array<double, 3>{};
+  };
+  bool is_any_held = system.robot().fixed_count() > 0;
   for (std::size_t i = 0; i < contact.size(); ++i) {
-    system.set_facet(i, contact[i], contact[i].pressed);
+    is_any_held = is_any_held || (contact[i].pressed && !slips(i));
+  }
+  for (std::size_t i = 0; i < contact.size(); ++i) {
+    const bool is_held = contact[i].pressed && (!slips(i) || !is_any_held);
+    is_any_held = is_any_held || is_held;
+    system.set_facet(i, contact[i], is_held);
   }
 }
 
@@ -203,13 +238,59 @@ void EquilibriumSolver::seek_others(Equilibrium& settled) {
   settled.steps += system.report().solve_count - solve_count;
 }
 
+std::vector<Equilibrium> EquilibriumSolver::let_slip(const Equilibrium& settled,
+                                                     const ContactOptions& contact) {
+  constexpr std::size_t kSlipFillMax = 60;
+  constexpr std::size_t kSlipCountMax = 3000;  // Larger ones take seconds, and lack digits.
+  const model::Robot& robot = choice_->system()->robot();
+  if (robot.free_count() > kSlipCountMax || robot.ranks().is_shared()) {
+    return {};
+  }
+  EquilibriumOptions options = options_;
+  options.fill_max = std::min(options.fill_max, kSlipFillMax);
+  const std::unique_ptr<LinearSystem> system = DirectSystem::make(robot, options);
+  if (!system) {
+    return {};
+  }
+  system->set_law(contact);
+  for (std::size_t i = 0; i < settled.contact.size(); ++i) {
+    const bool is_held = contact.law == ContactLaw::kRegularised || settled.contact[i].pressed;
+    system->set_facet(i, settled.contact[i], is_held);
+  }
+  SlidingContact search(*system, options);
+  std::vector<Equilibrium> found;
+  const auto goes_on = [&] {
+    auto next = search.run() == Outcome::kSettled ? slid(*system, search, settled) : std::nullopt;
+    if (next) {
+      found.push_back(*std::move(next));
+    }
+    return next.has_value();
+  };
+  if (!goes_on()) {
+    return {};
+  }
+  if (search.is_any_held()) {
+    search.let_turn();
+    if (!goes_on()) {
+      return {};
+    }
+  }
+  Equilibrium& first = found.front();
+  const LinearReport report = system->report();
+  first.method = report.method;
+  first.precision = report.precision;
+  first.steps = report.solve_count;
+  first.attempts = {attempt_since({}, report, first)};
+  return found;
+}
+
 SecondOrder EquilibriumSolver::find_second_order(const Equilibrium& settled,
                                                  const SecondOrderOptions& options) {
-  take_states(*choice_->system(), settled.contact);
+  take_states(*choice_->system(), settled);
   const auto make_direct = [&]() -> std::unique_ptr<LinearSystem> {
     auto beside = choice_->make_direct_beside();
     if (beside) {
-      take_states(*beside, settled.contact);
+      take_states(*beside, settled);
     }
     return beside;
   };

@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "connection_assessment.hpp"
 #include "decision.hpp"
+#include "pieces/pieces.hpp"
 #include "second_order_check.hpp"
 #include "several_solutions.hpp"
 #include "stability.hpp"
@@ -152,6 +155,55 @@ void look_beside(const Situation& here, solver::EquilibriumSolver& solver,
   }
 }
 
+bool are_all_stuck(const Equilibrium& equilibrium) {
+  return std::ranges::all_of(equilibrium.contact,
+                             [](const auto& state) { return state == mechanics::kStuck; });
+}
+
+/// Whether slips of feet may decide in place of the equilibrium without: on a level floor, where
+/// contact forces within friction hold the robot as a rigid body.
+bool may_let_slip(const Situation& here, const Assessment& assessment, bool is_bonded) {
+  return !here.robot.ranks().is_shared() && touches_one_level(here.robot) && assessment.is_stable &&
+         agrees(assessment) && !is_bonded && assessment.equilibrium.open_but_held_count == 0 &&
+         find_slip(here.robot, assessment.equilibrium).has_value();
+}
+
+/// Puts the equilibrium by Coulomb's law in place of one whose feet carry more sideways than their
+/// friction. Returns that in which feet that slip turn freely, where they would not; nothing is
+/// changed where no slips are known, or the robot would not stand by the model.
+std::optional<Equilibrium> let_slip(const Situation& here, solver::EquilibriumSolver& solver,
+                                    Assessment& assessment) {
+  Equilibrium& found = assessment.equilibrium;
+  const bool is_exact_law = found.law == ContactLaw::kUnilateral;
+  auto slid = solver.let_slip(
+      found, {.law = found.law,
+              .gamma = is_exact_law ? kStableGammas[0] : here.robot.material().contact_gamma});
+  const bool holds = !slid.empty() && std::ranges::all_of(slid, [&](const Equilibrium& one) {
+    return !find_slip(here.robot, one) && (here.is_on_flat_floor || are_all_stuck(one)) &&
+           (here.rule == StabilityRule::kHeld || model_stability(here, one).is_stable);
+  });
+  if (!holds) {
+    return std::nullopt;
+  }
+  slid.front().begin_with(found);
+  found = std::move(slid.front());
+  assessment.model = model_stability(here, found);
+  return slid.size() > 1 ? std::optional(std::move(slid.back())) : std::nullopt;
+}
+
+/// Takes another equilibrium's largest load ratio into the range, which is as far off.
+void widen_by(const model::Robot& robot, const Equilibrium& other, Assessment& assessment) {
+  if (!assessment.load_ratio_max) {
+    return;
+  }
+  LoadRange& range = assessment.load_ratio_range;
+  const double ratio = load_ratio_max(robot, other.displacement, other.displacement_low);
+  const double margin =
+      std::max(*assessment.load_ratio_max - range.low, range.high - *assessment.load_ratio_max);
+  range.low = ratio - margin < range.low || std::isnan(ratio) ? ratio - margin : range.low;
+  range.high = ratio + margin > range.high || std::isnan(ratio) ? ratio + margin : range.high;
+}
+
 /// The equilibrium, its loads, and what there is beside it. Loads come before others are sought, as
 /// then the second answer need not wait.
 void solve(const Situation& here, const solver::EquilibriumOptions& asked, Assessment& assessment) {
@@ -162,8 +214,14 @@ void solve(const Situation& here, const solver::EquilibriumOptions& asked, Asses
   if (assessment.equilibrium.outcome != Outcome::kSettled) {
     return;
   }
+  const auto turning = may_let_slip(here, assessment, options.is_bonded)
+                           ? let_slip(here, solver, assessment)
+                           : std::nullopt;
   const LoadRange answers = assess_loads(here, options, assessment);
-  if (stands_by_paper(assessment)) {
+  if (turning) {
+    widen_by(here.robot, *turning, assessment);
+  }
+  if (stands_by_paper(assessment) && assessment.equilibrium.slip.empty()) {
     look_beside(here, solver, options, answers, assessment);
   }
   const bool is_by_multigrid = assessment.equilibrium.method == solver::Method::kMultigrid;
@@ -247,6 +305,9 @@ Assessment assess_rigidly(const model::Robot& robot, bool has_figures) {
 }
 
 Assessment assess(const model::Robot& robot, const solver::EquilibriumOptions& options) {
+  if (!robot.pieces().empty()) {
+    return assess_pieces(robot, options);
+  }
   const Situation here(robot);
   Assessment start = look_at_rigid_body(here, options.has_rigid_figures);
   start.is_stable = start.is_stable || options.is_bonded;
@@ -293,6 +354,11 @@ Assessment assess_equilibrium(const model::Robot& robot, Equilibrium equilibrium
   }
   conclude(here, thread_count, assessment);
   return assessment;
+}
+
+int severity(Verdict verdict) {
+  constexpr std::array kSeverities = {0, 2, 3, 1};  // Safe, overload, unstable, undecided.
+  return kSeverities[static_cast<std::size_t>(verdict)];
 }
 
 const char* name(Verdict verdict) {

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "decision.hpp"
 
+#include <array>
 #include <cmath>
 #include <optional>
 #include <span>
 
+#include "holdfast/model/lattice_beam.hpp"
 #include "second_order_check.hpp"
 #include "several_solutions.hpp"
 #include "stability.hpp"
@@ -137,8 +139,33 @@ Reason falling_reason(const Assessment& assessment) {
   return reason;
 }
 
-void add_contact_remarks(Assessment& assessment) {
+/// Says how many feet slip, and which carries most then.
+Reason slip_remark(const model::Robot& robot, const Equilibrium& equilibrium) {
+  const model::LatticeBeam<double> beam(model::beam_section(robot.material()), robot.lattice());
+  Reason reason{.code = ReasonCode::kFeetSlip};
+  auto& [count, module, sideways, share, unused, none] = reason.numbers;
+  for (std::size_t i = 0; i < equilibrium.slip.size(); ++i) {
+    const model::Facet& facet = robot.facets()[i];
+    const auto local = beam.to_local(facet.direction, equilibrium.facet_force[i]);
+    const double across = std::hypot(local[0], local[1]);
+    if (equilibrium.slip[i] == std::array<double, 3>{}) {
+      continue;
+    }
+    count += 1;
+    if (count == 1 || across > sideways * (1 + kLoadRatioTie)) {
+      module = facet.module;
+      sideways = across;
+      share = across / std::abs(local[2]);
+    }
+  }
+  return reason;
+}
+
+void add_contact_remarks(const Situation& here, Assessment& assessment) {
   std::vector<Reason>& reasons = assessment.reasons;
+  if (!assessment.equilibrium.slip.empty()) {
+    reasons.push_back(slip_remark(here.robot, assessment.equilibrium));
+  }
   if (assessment.contact_model == ContactModel::kUnilateral) {
     reasons.push_back({.code = ReasonCode::kUnilateralContact});
   }
@@ -234,7 +261,7 @@ void decide(const Situation& here, Assessment& assessment) {
   assessment.verdict = decision.verdict;
   assessment.is_stable = decision.is_stable;
   assessment.reasons = {std::move(decision.reason)};
-  add_contact_remarks(assessment);
+  add_contact_remarks(here, assessment);
   add_load_remarks(here, assessment);
 }
 

@@ -170,6 +170,7 @@ void take_equilibrium(const State& state, Assessment& assessment) {
   equilibrium.gamma = 0;
   equilibrium.energy_error = 0;
   equilibrium.others.clear();
+  equilibrium.slip.clear();
   equilibrium.open_but_held_count = 0;
   equilibrium.facet_force = state.facet_force;
   equilibrium.contact.clear();

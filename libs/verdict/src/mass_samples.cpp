@@ -61,6 +61,10 @@ class KeptStates {
     if (!system_) {
       return;
     }
+    if (!known.slip.empty()) {  // Other masses, other slips.
+      system_.reset();
+      return;
+    }
     const bool is_exact_law = known.law == ContactLaw::kUnilateral;
     system_->set_law(
         {.law = known.law, .gamma = is_exact_law ? known.gamma : robot.material().contact_gamma});

@@ -29,11 +29,52 @@ std::vector<base::Cell> cells_of(const model::Robot& robot, const Reason& reason
       }
       return {robot.modules()[static_cast<std::size_t>(reason.numbers[1])].cell,
               robot.modules()[static_cast<std::size_t>(reason.numbers[2])].cell};
+    case ReasonCode::kFeetSlip:
+      return {robot.modules()[static_cast<std::size_t>(reason.numbers[1])].cell};
     case ReasonCode::kMaySlip:
       return {robot.modules()[static_cast<std::size_t>(reason.numbers[0])].cell};
     default:
       return {};
   }
+}
+
+Reason in_whole(Reason reason, std::span<const std::int32_t> modules,
+                std::span<const std::size_t> connections) {
+  const auto connection = [&](std::size_t place) {
+    double& number = reason.numbers[place];
+    number = static_cast<double>(connections[static_cast<std::size_t>(number)]);
+  };
+  const auto module = [&](std::size_t place) {
+    double& number = reason.numbers[place];
+    number = number < 0 ? number : modules[static_cast<std::size_t>(number)];
+  };
+  switch (reason.code) {
+    case ReasonCode::kConnectionsBreak:
+      connection(2);
+      break;
+    case ReasonCode::kHolds:
+      connection(0);
+      break;
+    case ReasonCode::kGapsOpen:
+      connection(1);
+      break;
+    case ReasonCode::kTouchesItself:
+      module(2);
+      module(1);
+      break;
+    case ReasonCode::kFeetSlip:
+    case ReasonCode::kBuckles:
+    case ReasonCode::kCollapses:
+    case ReasonCode::kTouchesFloor:
+      module(1);
+      break;
+    case ReasonCode::kMaySlip:
+      module(0);
+      break;
+    default:
+      break;
+  }
+  return reason;
 }
 
 const char* name(ReasonCode code) {
@@ -67,6 +108,7 @@ const char* name(ReasonCode code) {
                                                                        "rigid_undecided",
                                                                        "model_falls",
                                                                        "may_slip",
+                                                                       "feet_slip",
                                                                        "gaps_open",
                                                                        "loads_together",
                                                                        "carrier_breaks",

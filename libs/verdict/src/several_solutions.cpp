@@ -16,7 +16,8 @@ namespace {
 
 using Displacements = std::vector<base::Vec6<double>>;
 
-/// The largest load ratio of all ranks' parts; NaN if one is. `low` is that of a Solution.
+}  // namespace
+
 double load_ratio_max(const model::Robot& robot, const Displacements& u, const Displacements& low) {
   const ConnectionLaws laws(robot);
   double largest = -std::numeric_limits<double>::infinity();
@@ -30,6 +31,8 @@ double load_ratio_max(const model::Robot& robot, const Displacements& u, const D
   const bool is_any_nan = host::any(robot.ranks(), std::isnan(largest));
   return is_any_nan ? std::numeric_limits<double>::quiet_NaN() : host::max(robot.ranks(), largest);
 }
+
+namespace {
 
 void widen(LoadRange& range, double ratio) {
   range.low = ratio < range.low || std::isnan(ratio) ? ratio : range.low;

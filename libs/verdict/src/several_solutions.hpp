@@ -2,10 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "situation.hpp"
 
 /// Reports where the paper's contact law has several solutions (theory.md).
 namespace holdfast::verdict {
+
+/// The largest load ratio of all ranks' parts; NaN if one is. `low` is that of a Solution.
+double load_ratio_max(const model::Robot& robot, const std::vector<base::Vec6<double>>& u,
+                      const std::vector<base::Vec6<double>>& low);
 
 /// Sets `assessment.several` from `assessment.equilibrium`, whose `others` are known, from what
 /// lies between its two `answers`, and from the exact law's answer, with weak springs of `gamma`,

@@ -56,4 +56,14 @@ bool is_on_flat_floor(const model::Robot& robot) {
          host::all(ranks, is_level && !robot.has_payloads());
 }
 
+bool touches_one_level(const model::Robot& robot) {
+  const auto level = [&](const model::Facet& facet) {
+    return robot.modules()[base::at(facet.module)].cell.z;
+  };
+  return std::ranges::all_of(robot.facets(), [&](const model::Facet& facet) {
+    return facet.direction == base::down(robot.lattice()) && !facet.is_bonded() &&
+           level(facet) == level(robot.facets().front());
+  });
+}
+
 }  // namespace holdfast::verdict

@@ -26,6 +26,10 @@ struct Situation {
   StabilityRule rule;
 };
 
+/// Whether a whole robot touches nothing but one level floor, with facets that are not bonded,
+/// whatever its loads.
+bool touches_one_level(const model::Robot& robot);
+
 /// Does assess_rigid_body() for a robot whose situation is known.
 RigidBody rigid_body(const Situation& here);
 

@@ -5,12 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <set>
 
 #include "general_robot.hpp"
 #include "holdfast/base/rng.hpp"
+#include "holdfast/model/mass.hpp"
 #include "holdfast/verdict/assessment.hpp"
 #include "seeds.hpp"
 
@@ -211,13 +213,116 @@ TEST(SmoothFloor, holds_what_nothing_pushes_sideways) {
   }
 }
 
-/// An arch pushes its feet apart.
-TEST(SmoothFloor, does_not_hold_what_is_pushed) {
-  RobotSpec arch{.existing = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {2, 0, 1}, {2, 0, 0}}};
-  arch.floor.friction = 0;
-  const Assessment found = assess(model::Robot::create(arch).value());
-  EXPECT_EQ(found.verdict, Verdict::kUndecided);
-  EXPECT_EQ(found.reasons.front().code, ReasonCode::kMaySlip);
+RobotSpec portal(double friction, std::int32_t x, std::int32_t y) {
+  RobotSpec spec;
+  for (int i = 0; i <= 6; ++i) {
+    for (int z = i % 6 == 0 ? 0 : 3; z <= 3; ++z) {
+      spec.existing.push_back({x * i, y * i, z});
+    }
+  }
+  spec.floor.friction = friction;
+  return spec;
+}
+
+/// The slab of a portal whose feet slip: the thrust is mu times half the weight, and by statics of
+/// the left half the moment in the connection at 2.5 pitches follows from that, from the foot's own
+/// moment and from weights. The verdict changes where it reaches the strength, however the portal
+/// is turned.
+TEST(SlipperyFloor, leaves_a_portal_the_thrust_of_its_friction) {
+  for (const double friction : {0.0, 0.03, 0.1}) {
+    RobotSpec spec = portal(friction, 1, 0);
+    const double weight = model::module_weight_n(spec.material);
+    const double pitch = spec.material.pitch_mm;
+    const double thrust = friction * 6.5 * weight;
+    const Assessment weak = assess(model::Robot::create(spec).value());
+    const auto& foot = weak.equilibrium.facet_force.front();
+    EXPECT_NEAR(foot[0], thrust, 1e-9);
+    const double moment =
+        foot[4] + pitch * weight * (6.5 * 2.5 - 3 * 2.5 - 2.5 - 1.5 - 0.5) - 3 * pitch * thrust;
+    const double strength = 2 * std::abs(moment) / spec.material.facet_mm - thrust;
+    spec.material.strength_vertical_n = 1e3;
+    for (const auto& [x, y] :
+         {std::pair(1, 0), std::pair(-1, 0), std::pair(0, 1), std::pair(0, -1)}) {
+      spec.existing = portal(friction, x, y).existing;
+      for (const double share : {1.001, 0.999}) {
+        spec.material.strength_lateral_n = strength * share;
+        const Assessment found = assess(model::Robot::create(spec).value());
+        EXPECT_EQ(found.verdict, share > 1 ? Verdict::kSafe : Verdict::kOverload) << friction;
+        EXPECT_NEAR(*found.load_ratio_max, 1 / share, 1e-9);
+        EXPECT_EQ(std::ranges::count(found.reasons, ReasonCode::kFeetSlip, &Reason::code), 1);
+        EXPECT_FALSE(found.equilibrium.slip.empty());
+      }
+    }
+  }
+}
+
+/// A portal thrusts with 0.1237 of its pressure without slip: more friction changes nothing.
+TEST(SlipperyFloor, that_holds_changes_nothing) {
+  const Assessment rough = assess(model::Robot::create(portal(0.13, 1, 0)).value());
+  RobotSpec spec = portal(0, 1, 0);
+  spec.floor.friction = std::nullopt;
+  const Assessment without = assess(model::Robot::create(spec).value());
+  EXPECT_EQ(rough.equilibrium.displacement, without.equilibrium.displacement);
+  EXPECT_TRUE(rough.equilibrium.slip.empty());
+  EXPECT_EQ(rough.reasons, without.reasons);
+}
+
+/// A bar of two that is pushed slides at mu times its weight; below that it is safe, though its
+/// elastic feet share the push unevenly, and they carry it together.
+TEST(SlipperyFloor, holds_what_is_pushed_by_less_than_friction) {
+  for (const double share : {0.5, 0.8, 0.95, 0.99, 1.01}) {
+    RobotSpec bar{.existing = {{0, 0, 0}, {1, 0, 0}}};
+    bar.floor.friction = 0.2;
+    const double push = share * 0.2 * 2 * model::module_weight_n(bar.material);
+    bar.payloads = {{.cell = {0, 0, 0}, .force_n = {push, 0, 0}}};
+    const Assessment found = assess(model::Robot::create(bar).value());
+    EXPECT_EQ(found.verdict, share < 1 ? Verdict::kSafe : Verdict::kUnstable) << share;
+    if (share < 1) {
+      const auto& forces = found.equilibrium.facet_force;
+      EXPECT_NEAR(forces[0][0] + forces[1][0], -push, 1e-9) << share;
+    }
+  }
+}
+
+/// The forces of all feet of random robots lie within friction and balance the weight.
+TEST(SlipperyFloor, decides_random_robots_and_balances_them) {
+  int slip_count = 0;
+  int open_count = 0;
+  int count = 0;
+  for (int seed = 0; seed < test::campaign(300); ++seed) {
+    for (const base::Lattice& lattice : test::kLattices) {
+      RobotSpec spec =
+          test::on_a_floor(test::general_robot(lattice, static_cast<std::uint64_t>(seed)), false);
+      spec.fixed.clear();
+      spec.floor.friction = std::array{1.0, 0.5, 0.3, 0.1}[static_cast<std::size_t>(seed % 4)];
+      const auto robot = model::Robot::create(spec);
+      if (!robot) {
+        continue;
+      }
+      const Assessment found = assess(robot.value());
+      ++count;
+      open_count += found.reasons.front().code == ReasonCode::kMaySlip ? 1 : 0;
+      if (found.equilibrium.slip.empty()) {
+        continue;
+      }
+      ++slip_count;
+      std::array<double, 3> sum{};
+      for (std::size_t i = 0; i < found.equilibrium.facet_force.size(); ++i) {
+        const auto& force = found.equilibrium.facet_force[i];
+        EXPECT_TRUE(!found.equilibrium.contact[i].pressed ||
+                    std::hypot(force[0], force[1]) <= *spec.floor.friction * force[2] + 1e-8);
+        for (std::size_t k = 0; k < 3; ++k) {
+          sum[k] += force[k];
+        }
+      }
+      const double weight = model::mass_of(robot.value()).kg * -robot.value().gravity()[2];
+      EXPECT_NEAR(sum[0], 0, 1e-7 * weight);
+      EXPECT_NEAR(sum[1], 0, 1e-7 * weight);
+      EXPECT_NEAR(sum[2], weight, 1e-7 * weight);
+    }
+  }
+  EXPECT_GE(slip_count, test::least(50));
+  EXPECT_LE(100 * open_count, count);
 }
 
 /// The robot of 21 modules whose centre of mass the displacements take from 19.05 to 20.06 mm: the

@@ -173,6 +173,8 @@ base::Result<io::Document> generate(std::string_view family, std::size_t size);
 /// The name of each family and the meaning of its size, in the order of their list.
 std::vector<std::pair<std::string_view, std::string_view>> family_list();
 
+/// Checks a robot. One that is in several pieces must not be asked for a proof, the limit load or
+/// the deformed shape.
 CheckResult check(const model::Robot& robot, const CheckOptions& options = {});
 
 /// Checks the structure's robot.

@@ -40,11 +40,6 @@ struct Column {
   double margin = std::numeric_limits<double>::infinity();
 };
 
-int severity(Verdict verdict) {
-  constexpr std::array<int, 4> kSeverity = {0, 2, 3, 1};
-  return kSeverity[static_cast<std::size_t>(verdict)];
-}
-
 std::vector<Column> columns_of(const plan::SequenceJudgement& judged) {
   const std::size_t step_count = judged.steps.size();
   std::vector<Column> columns(std::min(step_count, kColumnMax));

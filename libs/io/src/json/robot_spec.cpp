@@ -433,13 +433,22 @@ base::Result<Sequence> make_sequence(const Document& document) {
 }
 
 base::Result<model::Robot> make_robot(const Document& document, int thread_count) {
-  const auto spec = make_spec(document);
-  if (!spec) {
-    return spec.error();
+  auto made = make_spec(document);
+  if (!made) {
+    return made.error();
   }
-  auto robot = model::Robot::create(spec.value(), thread_count);
+  model::RobotSpec spec = std::move(made).value();
+  spec.may_be_in_pieces = document.may_be_in_pieces;
+  auto robot = model::Robot::create(spec, thread_count);
   if (!robot) {
     return with_other_lattice(robot.error(), document);
+  }
+  if (!robot.value().pieces().empty()) {
+    spec.may_be_in_pieces = false;
+    const auto whole = model::Robot::create(spec, thread_count);
+    if (!whole && with_other_lattice(whole.error(), document).message != whole.error().message) {
+      return with_other_lattice(whole.error(), document);
+    }
   }
   return robot;
 }

@@ -336,6 +336,7 @@ class Writer {
     json_.end_object();
     json_.key("stability");
     write_stability(json_, assessment);
+    write_pieces();
   }
 
   void write_reasons() {
@@ -349,6 +350,25 @@ class Writer {
     json_.begin_array();
     for (const verdict::Reason& reason : entry_.assessment->reasons) {
       json_.value(verdict::name(reason.code));
+    }
+    json_.end_array();
+  }
+
+  /// Writes what is known of each piece of a robot that is in several.
+  void write_pieces() {
+    if (entry_.assessment->pieces.empty()) {
+      return;
+    }
+    json_.key("pieces");
+    json_.begin_array();
+    for (const verdict::PieceAnswer& piece : entry_.assessment->pieces) {
+      json_.begin_object();
+      json_.member("modules", piece.module_count);
+      json_.member("first", piece.first);
+      json_.member("verdict", verdict::name(piece.verdict));
+      json_.member("load_ratio_max", piece.load_ratio_max);
+      json_.member("margin_mm", piece.margin_mm);
+      json_.end_object();
     }
     json_.end_array();
   }

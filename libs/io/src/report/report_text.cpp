@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
@@ -107,6 +108,23 @@ void write_loads(Out out, const model::Robot& robot, const verdict::Assessment& 
   }
 }
 
+/// Writes a line for each of a robot's pieces, the worst first.
+void write_pieces(Out out, const verdict::Assessment& assessment) {
+  constexpr std::size_t kListedPieces = 10;
+  const auto& pieces = assessment.pieces;
+  for (std::size_t i = 0; i < std::min(pieces.size(), kListedPieces); ++i) {
+    const verdict::PieceAnswer& piece = pieces[i];
+    fmt::format_to(out, "  {}  {:<9}  load ratio {:>7}, margin {:>9}  {} with {}\n",
+                   i == 0 ? "pieces    " : "          ", verdict::name(piece.verdict),
+                   piece.load_ratio_max ? beside_one(*piece.load_ratio_max, 4) : "-",
+                   piece.margin_mm ? host::fixed(*piece.margin_mm, 2) + " mm" : "-",
+                   host::counted(piece.module_count, "module"), model::text(piece.first));
+  }
+  if (pieces.size() > kListedPieces) {
+    fmt::format_to(out, "              (and {} more)\n", pieces.size() - kListedPieces);
+  }
+}
+
 void write_second_order(Out out, const verdict::Assessment& assessment) {
   if (const auto& second = assessment.second_order) {
     fmt::format_to(out, "  second order  {}: {}\n", buckling_text(*second),
@@ -186,6 +204,7 @@ std::string write_report_text(const ReportEntry& entry) {
   write_modules(out, *entry.robot);
   write_stability(out, entry);
   write_loads(out, *entry.robot, assessment, entry.is_deformed);
+  write_pieces(out, assessment);
   write_second_order(out, assessment);
   write_solver(out, assessment, entry.seconds);
   if (entry.is_deformed) {

@@ -35,6 +35,7 @@ double norm_of(double work, double error) {
 
 bool is_stuck_and_safe(const verdict::Assessment& solved, bool is_bonded) {
   return solved.verdict == verdict::Verdict::kSafe && !solved.several &&
+         solved.equilibrium.slip.empty() &&
          solved.contact_model != verdict::ContactModel::kUnilateral &&
          solved.stability_rule != verdict::StabilityRule::kContactForces &&
          (is_bonded || std::ranges::all_of(solved.equilibrium.contact, [](const auto& state) {

@@ -295,7 +295,7 @@ void CandidateJudge::judge_together(std::span<Waiting> lanes, std::vector<Waitin
 
 void CandidateJudge::conclude(const Waiting& waiting, double ratio, const Vec6<double>& own) const {
   const double doubt = kNearLimit * std::max(1.0, std::abs(ratio));
-  if (!std::isfinite(ratio) || std::abs(ratio - 1) <= doubt) {
+  if (!std::isfinite(ratio) || std::abs(ratio - 1) <= doubt || waiting.grown.footing.is_slipping) {
     return;
   }
   if (ratio < 1 && !stays_over_polygon(waiting, own)) {
@@ -305,9 +305,7 @@ void CandidateJudge::conclude(const Waiting& waiting, double ratio, const Vec6<d
   *waiting.result = Candidate{
       .cell = waiting.site.cell,
       .is_robot = true,
-      .judgement = {.verdict = waiting.grown.footing.is_slipping ? Verdict::kUndecided : loaded,
-                    .load_ratio_max = ratio,
-                    .margin_mm = waiting.margin_mm}};
+      .judgement = {.verdict = loaded, .load_ratio_max = ratio, .margin_mm = waiting.margin_mm}};
 }
 
 Vec6<double> CandidateJudge::displacement(std::size_t module, std::size_t lane,

@@ -73,6 +73,9 @@ struct Document {
   Origin origin;
   /// What every strength is divided by in robots that are made of the document; no file says it.
   double safety_factor = 1;
+  /// Whether make_robot() takes modules that are in several pieces, each of which something holds;
+  /// no file says it.
+  bool may_be_in_pieces = false;
 
   // VisibleSim's own, without meaning for mechanics.
   Attributes parameters;         ///< Of <parameters>: nofIterations, preconditioner, globalBeta...
@@ -140,6 +143,7 @@ struct ReadOptions {
   std::optional<double> mesh_pitch = {};
   /// Document::safety_factor, with a warning if it is not 1; heeded by read_document().
   double safety_factor = 1;
+  bool may_be_in_pieces = false;  ///< Document::may_be_in_pieces; heeded by read_document().
 };
 
 /// Takes a number of the material that somebody states.
@@ -226,7 +230,8 @@ base::Result<Sequence> make_sequence(const Document& document);
 base::Error with_other_lattice(base::Error error, const Document& document);
 
 /// Makes the robot with the first step; threads are those of model::Robot::create. Errors: those of
-/// make_spec(), and those of model::Robot::create with_other_lattice().
+/// make_spec(), and those of model::Robot::create with_other_lattice(). Pieces of a robot that
+/// another lattice would connect, or other units, are an error too.
 base::Result<model::Robot> make_robot(const Document& document, int thread_count = 0);
 
 }  // namespace holdfast::io

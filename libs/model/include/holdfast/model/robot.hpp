@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -145,6 +146,8 @@ struct RobotSpec {
   std::vector<Payload> payloads = {};
   std::vector<CarriedMass> carried = {};
   std::vector<LostFacet> lost_facets = {};  ///< Robot::facets() has all but these.
+  /// Whether modules may be in several pieces, each of which something holds: Robot::pieces().
+  bool may_be_in_pieces = false;
 };
 
 /// Takes away what a spec says of modules that it does not have.
@@ -152,6 +155,8 @@ void forget_absent(RobotSpec& spec);
 
 /// Takes away what a spec says of pairs of which it does not have both modules.
 void forget_absent_pairs(RobotSpec& spec);
+
+struct RobotPiece;
 
 /// A robot that can be computed: connected, supported, no two modules in one cell. Immutable.
 class Robot {
@@ -178,6 +183,11 @@ class Robot {
 
   /// The number of modules that are no copies of other ranks'.
   std::size_t own_count() const { return part_.own_count; }
+
+  /// The pieces of a robot whose modules are not all connected, each a robot by itself, the largest
+  /// first; empty if they are, and always unless the spec allows pieces. Who does not ask must not
+  /// be given such a robot: equations and statics of the whole are not those of one body.
+  std::span<const RobotPiece> pieces() const;
 
   /// The existing modules, then the planned ones, each in the order of the spec.
   std::span<const Module> modules() const { return modules_; }
@@ -294,6 +304,9 @@ class Robot {
   std::optional<std::string> take(const RobotSpec& spec, int thread_count, Extent extent);
 
   void add_modules(const RobotSpec& spec);
+
+  /// Makes a robot of each of these modules, by index. Returns the first fault.
+  std::optional<std::string> take_pieces(const RobotSpec& spec, int thread_count);
   std::optional<std::string> fix(std::span<const base::Cell> cells, const CellIndex& index);
 
   /// Finds neighbours, all of them connected.
@@ -340,6 +353,14 @@ class Robot {
   std::size_t released_count_ = 0;
   bool has_bonded_facets_ = false;
   RobotPart part_;
+  /// All copies of a robot, which is immutable, have the same.
+  std::shared_ptr<const std::vector<RobotPiece>> pieces_;
+};
+
+/// A piece of a robot that is in several.
+struct RobotPiece {
+  Robot robot;
+  std::vector<std::int32_t> modules;  ///< The index of each of its modules in the whole.
 };
 
 /// The number of modules of the whole robot, of all ranks.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -66,6 +67,9 @@ struct Equilibrium : Solution {
   /// Open facets that are held sideways all the same, as they would close when released: no slip
   /// and no force at once is then impossible, and the truth lies between held and free.
   int open_but_held_count = 0;
+  /// Each facet's slip along its axes x' and y', mm, and turn about its normal, rad, once friction
+  /// has given way; empty where that was not asked.
+  std::vector<std::array<double, 3>> slip;
   double free_gamma = 0;  ///< The weak springs of the alternative with these free.
   /// All tries, in their order; the last one made the displacements.
   std::vector<Attempt> attempts;
@@ -115,6 +119,14 @@ class EquilibriumSolver {
   /// corner; nothing is sought for more than 24 facets, or eight with more than 128 modules, or
   /// where systems are iterated.
   std::vector<Equilibrium> seek_settled(const ContactOptions& contact);
+
+  /// Lets facets slip by Coulomb's law whose sideways forces exceed their friction, from `settled`
+  /// on, which was found by the law `contact`; robot and loads are whole. The law is that of loads
+  /// which grow from zero in proportion. Returns two equilibria where facets that slip are also
+  /// held against turning about their normals: with these held, and with them free to turn; else
+  /// one. None if no slips are found, other starts lead to other forces, a facet might be in
+  /// another state, or the robot is too large for a factorization.
+  std::vector<Equilibrium> let_slip(const Equilibrium& settled, const ContactOptions& contact);
 
   /// What linear theory leaves out of a settled equilibrium of this robot, which is whole, with its
   /// facets in their states by the exact law. Takes a factorization or two; where these take much

@@ -112,6 +112,15 @@ struct ModelStability {
   std::optional<Slip> slip_otherwise = {};  ///< By the exact law, asked beside the paper's.
 };
 
+/// What is known of one piece of a robot that is in several.
+struct PieceAnswer {
+  std::size_t module_count = 0;
+  base::Cell first;  ///< Its first module, by which it is named.
+  Verdict verdict = Verdict::kUndecided;
+  std::optional<double> load_ratio_max;
+  std::optional<double> margin_mm;
+};
+
 struct Assessment {
   Verdict verdict = Verdict::kUndecided;
   std::vector<Reason> reasons;  ///< One or more; the first decides.
@@ -155,6 +164,11 @@ struct Assessment {
   /// Further solutions; none if the law that the forces come from has one, as far as was found.
   std::optional<SeveralSolutions> several;
   solver::Equilibrium equilibrium;  ///< Displacements, contact states, ground forces.
+  /// The pieces of a robot that is in several, the worst first; else empty. Each is judged by
+  /// itself. The verdict is then the worst one's, with its reason; stability is that of the piece
+  /// with the least margin, what linear theory leaves out that of the one where it is trusted
+  /// least, and loads are those of all.
+  std::vector<PieceAnswer> pieces;
 };
 
 /// A load ratio this close below 1 counts as 1: the margin is rounding, not strength. One below
@@ -195,6 +209,9 @@ Assessment assess_equilibrium(const model::Robot& robot, solver::Equilibrium equ
 /// undecided verdict. None where linear theory is trusted or its trust not known, where nobody said
 /// what the elastic modulus is, or where all that bending does leaves the verdict as it is.
 std::optional<Reason> second_order_doubt(const Assessment& assessment);
+
+/// How bad a verdict is: safe 0, undecided 1, overload 2, unstable 3.
+int severity(Verdict verdict);
 
 /// Returns "safe", "overload", "unstable" or "undecided".
 const char* name(Verdict verdict);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -47,8 +48,11 @@ enum class ReasonCode : std::uint8_t {
   kRigidUndecided,  ///< Whether they do was not found out.
   kModelFalls,      ///< The model lets it fall, though contact forces exist that would hold it.
   kMaySlip,         ///< A facet's friction is exceeded: its module, |ft|/|fn|, the coefficient.
-  kGapsOpen,        ///< How many, index of the worst, its gap and its limit, mm.
-  kLoadsTogether,   ///< Ratios are factors of all loads together, payloads too.
+  /// Feet slip until friction holds them: how many, the module whose foot then carries most
+  /// sideways, that force in N, and as a share of its pressure.
+  kFeetSlip,
+  kGapsOpen,       ///< How many, index of the worst, its gap and its limit, mm.
+  kLoadsTogether,  ///< Ratios are factors of all loads together, payloads too.
   kCarrierBreaks,  ///< The connection by which a moved module hangs on its carrier: its load ratio.
   kCarrierHolds,   ///< It is the worst of all: its load ratio.
   kInPieces,       ///< The robot is, each of which is judged by itself: how many.
@@ -99,6 +103,11 @@ struct Reason {
 /// The cells of a robot that the indices of a reason mean: both ends of a connection, a module, or
 /// none.
 std::vector<base::Cell> cells_of(const model::Robot& robot, const Reason& reason);
+
+/// A reason of a piece of a robot as one of the whole: indices are the piece's, and these lists say
+/// which they are in the whole.
+Reason in_whole(Reason reason, std::span<const std::int32_t> modules,
+                std::span<const std::size_t> connections);
 
 /// The word for a code in JSON reports, such as "connections_break".
 const char* name(ReasonCode code);
