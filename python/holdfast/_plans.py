@@ -195,7 +195,8 @@ class Steps(_Texts, Judged, Drawn):
         """What each stage was found to be: (steps, 3), release, shift, connect.
 
         Fields: ``verdict`` (0 safe, 1 overload, 2 unstable, 3 undecided), ``load_ratio_max``,
-        ``margin_mm`` (NaN where none is known).
+        ``margin_mm`` (NaN where none is known; a load ratio that is only proved not to exceed a
+        bound counts in `load_ratio_bound` alone).
         """
         return self._held.stages
 
@@ -211,8 +212,13 @@ class Steps(_Texts, Judged, Drawn):
 
     @property
     def load_ratio_max(self) -> Optional[float]:
-        """The largest load ratio of all stages (Eq. 17)."""
+        """The largest load ratio of all stages that were solved (Eq. 17)."""
         return self._held.load_ratio_max
+
+    @property
+    def load_ratio_bound(self) -> Optional[float]:
+        """What no stage exceeds, where some are certified by a bound; None if all were solved."""
+        return self._held.load_ratio_bound
 
     @property
     def margin_min_mm(self) -> Optional[float]:
@@ -252,12 +258,13 @@ def _stage(place: Optional[tuple[int, int]]) -> Optional[tuple[int, Stage]]:
 
 def steps(robot: Union[Robot, Path], plan: Optional[Sequence[Mapping[str, Any]]] = None, *,
           threads: int = 0, memory: float = 4, ends_when_unsafe: bool = False,
-          progress: Progress = None) -> Steps:
+          exact: bool = False, progress: Progress = None) -> Steps:
     """Is every stage of every step safe?
 
     `plan` is a list of steps as in holdfast JSON, ``[{'attach': [...]}, {'move': [{'from': ...,
     'to': ...}]}]``; without it the robot's own steps are judged. `progress` is called with (steps
-    judged, of how many).
+    judged, of how many). `exact` solves every stage, also of robots of more than 256 modules: of
+    these most stages of steps that only attach, or only detach, are certified by a bound.
 
     >>> tower = Robot([[0, 0, 0], [1, 0, 0]])
     >>> steps(tower, [{'attach': [[0, 0, 1]]}, {'attach': [[0, 0, 2], [0, 0, 3]]}])
@@ -268,7 +275,7 @@ def steps(robot: Union[Robot, Path], plan: Optional[Sequence[Mapping[str, Any]]]
         start = start.with_steps(plan)
     with told(progress, 'steps', is_counted=True) as tell:
         judged: Steps = Steps._of(
-            _core.steps(start._held, threads, memory, ends_when_unsafe, tell))
+            _core.steps(start._held, threads, memory, ends_when_unsafe, exact, tell))
     judged.robot = start
     return judged
 

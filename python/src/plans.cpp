@@ -56,6 +56,13 @@ JudgementRow row_of(const Judged& judged) {
           .margin_mm = judged.margin_mm.value_or(kNone)};
 }
 
+/// The row without a load ratio that is only a bound.
+JudgementRow solved_row_of(const plan::Judgement& judged) {
+  JudgementRow row = row_of(judged);
+  row.load_ratio_max = judged.is_bound ? kNone : row.load_ratio_max;
+  return row;
+}
+
 template <class Judged>
 JudgementRow row_at(const base::Cell& cell, const Judged& judged) {
   JudgementRow row = row_of(judged);
@@ -106,7 +113,7 @@ py::dict remedies(const SharedCheck& check, const py::handle& threads, const py:
 }
 
 std::shared_ptr<JudgedSteps> steps(const SharedStructure& structure, const py::handle& threads,
-                                   const py::handle& memory, bool ends_when_unsafe,
+                                   const py::handle& memory, bool ends_when_unsafe, bool is_exact,
                                    py::object progress) {
   const CheckOptions check = check_options(threads, memory, false);
   const std::size_t count = io::step_count(structure->document);
@@ -118,6 +125,7 @@ std::shared_ptr<JudgedSteps> steps(const SharedStructure& structure, const py::h
       .thread_count = check.thread_count,
       .memory_bytes_max = check.memory_bytes_max,
       .ends_when_unsafe = ends_when_unsafe,
+      .is_exact = is_exact,
       .progress = [&](std::size_t judged_count) { watch(judged_count, count); }};
   auto judged = std::make_shared<JudgedSteps>(StepsFile{.name = structure->name,
                                                         .document = structure->document,
@@ -133,7 +141,7 @@ py::array stages(const JudgedSteps& judged) {
   std::vector<JudgementRow> rows;
   for (const plan::StepJudgement& step : judged.result.judgement.steps) {
     for (const plan::StageJudgement& stage : step.stages) {
-      rows.push_back(row_of(stage));
+      rows.push_back(solved_row_of(stage));
     }
   }
   return rows_of(rows, false).attr("reshape")(-1, 3);
@@ -208,8 +216,7 @@ py::list order_batches(const io::OrderReport& report) {
 py::array order_judgements(const io::OrderReport& report) {
   std::vector<JudgementRow> rows;
   for (const plan::Judgement& judgement : report.result.order.judgements) {
-    JudgementRow& row = rows.emplace_back(row_of(judgement));
-    row.load_ratio_max = judgement.is_bound ? kNone : row.load_ratio_max;
+    rows.push_back(solved_row_of(judgement));
   }
   if (report.is_reversed) {
     std::ranges::reverse(rows);
@@ -330,6 +337,9 @@ void add_steps(py::module_& module) {
           [](const JudgedSteps& s) { return place_of(s.result.judgement.first_undecided); })
       .def_property_readonly("load_ratio_max",
                              [](const JudgedSteps& s) { return s.result.judgement.load_ratio_max; })
+      .def_property_readonly(
+          "load_ratio_bound",
+          [](const JudgedSteps& s) { return s.result.judgement.load_ratio_bound; })
       .def_property_readonly("margin_min_mm",
                              [](const JudgedSteps& s) { return s.result.judgement.margin_min_mm; })
       .def_property_readonly("seconds", [](const JudgedSteps& s) { return s.result.seconds; })
