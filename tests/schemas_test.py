@@ -200,6 +200,8 @@ ROBOTS = {
     'row': structure([0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0]),
     'shifted': structure([1, 0, 0], [2, 0, 0], [3, 0, 0], [4, 0, 0]),
     'leaning': structure([0, 0, 0], [0, 0, 1], [1, 0, 1], [2, 0, 1]),
+    'slab': structure([0, 0, 0], steps=[{'attach': [[number // 17, number % 17, 0]]}
+                                        for number in range(1, 17 * 16)]),
     'grows': structure([0, 0, 0], [0, 0, 1], [1, 0, 0], planned=[[0, 1, 0]],
                        later_steps=[[[1, 1, 0]]], steps=[{'detach': [[1, 1, 0]]}]),
 }
@@ -232,6 +234,7 @@ def commands(scenarios, tests):
     yield ['check', 'slender.json', '--connections', '3']
     yield ['steps', f'{plan}/walk_over_beam.json']
     yield ['steps', 'walk_to_topple.json', '--until-unsafe']
+    yield ['steps', 'slab.json']
     yield ['steps', 'grows.json', '--scatter', '10%', '--probability', '0.9', '--lose-one']
     yield from (['next', path] for path in (safe, topples, *general))
     yield ['order', 'cube.json', '--reverse']

@@ -195,7 +195,7 @@ std::vector<StageJudgement> CertifiedRun::judge(
   const model::Robot first = model::Robot::create(part_of(all.spec, all.state), 1).value();
   std::vector<StageJudgement> judged = {solved_stage(first, all.run_judge.assess(all.state))};
   const std::size_t count = all.growth.ends.size();
-  while (judged.size() <= count && goes_on(judged)) {
+  while (judged.size() <= count && (judged.size() == 1 || goes_on(judged))) {
     const std::size_t begin = judged.size() - 1;
     const std::size_t elements = begin == 0 ? 0 : all.growth.ends[begin - 1];
     const auto last = std::ranges::upper_bound(all.growth.ends, elements + RunJudge::kRunLength);

@@ -41,8 +41,8 @@ class CertifiedRun {
   CertifiedRun& operator=(const CertifiedRun&) = delete;
 
   /// The judgements of the robot before the run and after each step, in the order of the steps.
-  /// `goes_on` is asked now and then, with those that are known, the smallest robot's first; if it
-  /// says no these are returned. It must not in a run that detaches.
+  /// `goes_on` is asked now and then after some steps, with those that are known, the smallest
+  /// robot's first; if it says no these are returned. It must not in a run that detaches.
   std::vector<StageJudgement> judge(
       const std::function<bool(std::span<const StageJudgement> known)>& goes_on);
 

@@ -13,8 +13,8 @@
 /// What a planner asks of one robot on the way.
 namespace holdfast::plan {
 
-/// Of robots of so many modules at most all states on a way are solved, which takes a tenth of a
-/// second; most of those of larger ones are certified by a bound.
+/// Robots of so many modules at most are solved in all states on a way, which takes a tenth of a
+/// second; most states of larger ones are certified by a bound.
 inline constexpr std::size_t kExactModuleCount = 256;
 
 struct Judgement {

@@ -55,8 +55,8 @@ struct SequenceOptions {
   solver::EquilibriumOptions solver =
       {};                         ///< Of each check; its threads are those of the sequence.
   bool ends_when_unsafe = false;  ///< Steps behind the first unsafe one are left out.
-  /// In runs of steps that only attach, or only detach, states of robots that come to have more
-  /// modules than this may be certified by a bound (Judgement::is_bound) instead of being solved.
+  /// Robots that come to have more modules than this may be certified by a bound in runs of steps
+  /// that only attach, or only detach, instead of being solved (Judgement::is_bound).
   std::size_t solved_count_max = std::numeric_limits<std::size_t>::max();
   /// Called between steps, with how many are judged; from the thread that called.
   std::function<void(std::size_t judged_count)> progress = {};
