@@ -237,6 +237,8 @@ def commands(scenarios, tests):
     yield ['steps', 'slab.json']
     yield ['steps', 'grows.json', '--scatter', '10%', '--probability', '0.9', '--lose-one']
     yield from (['next', path] for path in (safe, topples, *general))
+    yield ['next', 'large.json']
+    yield ['next', 'cube.json', '--seconds', '0']
     yield ['order', 'cube.json', '--reverse']
     yield ['order', 'cube.json', '--reach', 'line', '--from', 'row.json']
     yield ['order', f'{plan}/pair.json', '--strength-needed', '--scatter', '10%', '--lose-one']
@@ -273,6 +275,7 @@ def main(program, repository, image=None):
             pathlib.Path(folder, name + '.json').write_text(json.dumps(robot))
         run('generate', 'cube', '7', '-o', 'cube.json')
         run('generate', 'tower', '7000', '-o', 'slender.json')
+        run('generate', 'cube', '15', '-o', 'large.json')
         run('move', f'{repository}/scenarios/plan/around_arm_from.json',
             f'{repository}/scenarios/plan/around_arm_to.json', '--geometry-only', '-o',
             'walk_to_topple.json')

@@ -3,6 +3,7 @@
 """What may come next: places for a module, steps, orders, moves."""
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Optional, Union
 
@@ -113,7 +114,7 @@ class Places(_Texts, Drawn):
         """Best first: safe ones by ascending load ratio, then undecided, overload, unstable.
 
         Fields: ``cell`` (3), ``verdict`` (0 safe, 1 overload, 2 unstable, 3 undecided),
-        ``load_ratio_max`` and ``margin_mm`` (NaN where none is known).
+        ``load_ratio_max`` and ``margin_mm`` (NaN where none is known, or only a bound).
         """
         return self._held.candidates
 
@@ -123,6 +124,11 @@ class Places(_Texts, Drawn):
         candidates = self.candidates
         cells: npt.NDArray[np.int32] = candidates['cell'][candidates['verdict'] == 0]
         return cells
+
+    @property
+    def open_count(self) -> int:
+        """The number of places of which nothing is known, as time ended the search."""
+        return self._held.open_count
 
     def _drawn(self, asked: _core.Figure) -> str:
         """With a ghost in every place."""
@@ -136,10 +142,14 @@ class Places(_Texts, Drawn):
 
 
 def next_places(robot: Union[Robot, Path], *, threads: int = 0, memory: float = 4,
-                bonded: bool = False, progress: Progress = None) -> Places:
+                bonded: bool = False, exact: bool = False, seconds: float = math.inf,
+                progress: Progress = None) -> Places:
     """Where may the next module go? See `Robot.next`.
 
-    `progress` is called with (places judged, of how many).
+    Most places of robots of more than 3,000 modules are certified by a bound of the load ratio;
+    `exact` finds it for all. The search ends after `seconds`: places that nobody has judged by then
+    are left out, and `Places.open_count` says how many. `progress` is called with (places judged,
+    of how many).
 
     >>> robot = Robot([[0, 0, 0], [1, 0, 0]])
     >>> next_places(robot)
@@ -147,7 +157,7 @@ def next_places(robot: Union[Robot, Path], *, threads: int = 0, memory: float = 
     """
     with told(progress, 'next', is_counted=True) as tell:
         places: Places = Places._of(
-            _core.next(_robot(robot)._held, threads, memory, bonded, tell))
+            _core.next(_robot(robot)._held, threads, memory, bonded, exact, seconds, tell))
     return places
 
 

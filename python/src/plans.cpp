@@ -72,10 +72,17 @@ JudgementRow row_at(const base::Cell& cell, const Judged& judged) {
   return row;
 }
 
+double seconds_of(const py::handle& given, const char* what) {
+  return number_of(given, what, 0, std::numeric_limits<double>::infinity());
+}
+
 std::shared_ptr<Places> next(const SharedStructure& structure, const py::handle& threads,
-                             const py::handle& memory, bool is_bonded, py::object progress) {
+                             const py::handle& memory, bool is_bonded, bool is_exact,
+                             const py::handle& seconds, py::object progress) {
   Watch watch(std::move(progress));
-  NextOptions options{.check = check_options(threads, memory, is_bonded)};
+  NextOptions options{.check = check_options(threads, memory, is_bonded),
+                      .is_exact = is_exact,
+                      .seconds_max = seconds_of(seconds, "seconds")};
   options.progress = [&](std::size_t done, std::size_t count) { watch(done, count); };
   return without_gil(
       watch, [&] { return std::make_shared<Places>(structure, find_next(*structure, options)); });
@@ -149,10 +156,6 @@ py::array stages(const JudgedSteps& judged) {
 
 std::optional<std::pair<std::size_t, int>> place_of(const std::optional<plan::StageId>& id) {
   return id ? std::optional(std::pair(id->step, static_cast<int>(id->stage))) : std::nullopt;
-}
-
-double seconds_of(const py::handle& given, const char* what) {
-  return number_of(given, what, 0, std::numeric_limits<double>::infinity());
 }
 
 std::shared_ptr<io::OrderReport> order(const Structure& target, const py::handle& start,
@@ -308,6 +311,7 @@ void add_places(py::module_& module) {
       .def_property_readonly("structure", [](const Places& p) { return p.structure; })
       .def_property_readonly("candidates", &candidates)
       .def_property_readonly("check_count", [](const Places& p) { return p.result.check_count; })
+      .def_property_readonly("open_count", [](const Places& p) { return p.result.open_count; })
       .def_property_readonly("seconds", [](const Places& p) { return p.result.seconds; })
       .def("json",
            [](const Places& p) {

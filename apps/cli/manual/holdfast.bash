@@ -81,9 +81,10 @@ _holdfast() {
         --title) : ;;
         --view) words="iso front side top" ;;
         --limit) : ;;
+        --seconds) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --json --svg --size --title --grey --view --no-legend --limit -q --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --json --svg --size --title --grey --view --no-legend --limit --exact --seconds -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     order)
