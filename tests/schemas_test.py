@@ -201,6 +201,8 @@ ROBOTS = {
     'shifted': structure([1, 0, 0], [2, 0, 0], [3, 0, 0], [4, 0, 0]),
     'pieces': structure([0, 0, 0], [0, 0, 1], [5, 0, 0], [5, 0, 1], [6, 0, 1]),
     'leaning': structure([0, 0, 0], [0, 0, 1], [1, 0, 1], [2, 0, 1]),
+    'slab': structure([0, 0, 0], steps=[{'attach': [[number // 17, number % 17, 0]]}
+                                        for number in range(1, 17 * 16)]),
     'grows': structure([0, 0, 0], [0, 0, 1], [1, 0, 0], planned=[[0, 1, 0]],
                        later_steps=[[[1, 1, 0]]], steps=[{'detach': [[1, 1, 0]]}]),
 }
@@ -234,8 +236,11 @@ def commands(scenarios, tests):
     yield ['check', 'pieces.json']
     yield ['steps', f'{plan}/walk_over_beam.json']
     yield ['steps', 'walk_to_topple.json', '--until-unsafe']
+    yield ['steps', 'slab.json']
     yield ['steps', 'grows.json', '--scatter', '10%', '--probability', '0.9', '--lose-one']
     yield from (['next', path] for path in (safe, topples, *general))
+    yield ['next', 'large.json']
+    yield ['next', 'cube.json', '--seconds', '0']
     yield ['order', 'cube.json', '--reverse']
     yield ['order', 'cube.json', '--reach', 'line', '--from', 'row.json']
     yield ['order', f'{plan}/pair.json', '--strength-needed', '--scatter', '10%', '--lose-one']
@@ -272,6 +277,7 @@ def main(program, repository, image=None):
             pathlib.Path(folder, name + '.json').write_text(json.dumps(robot))
         run('generate', 'cube', '7', '-o', 'cube.json')
         run('generate', 'tower', '7000', '-o', 'slender.json')
+        run('generate', 'cube', '15', '-o', 'large.json')
         run('move', f'{repository}/scenarios/plan/around_arm_from.json',
             f'{repository}/scenarios/plan/around_arm_to.json', '--geometry-only', '-o',
             'walk_to_topple.json')

@@ -67,6 +67,13 @@ def draw_steps(judged: Steps, figure: Any) -> Any:
                  bbox_to_anchor=(0, 1), borderaxespad=0.2)
     ratio.stairs(_extreme(np.nanmax, stages['load_ratio_max']), edges, baseline=None,
                  color=_RATIO_INK, linewidth=1.6)
+    if judged.load_ratio_bound is not None:
+        bounds = np.array([[stage.get('load_ratio_bound', np.nan)
+                            for stage in step['stages'].values()]
+                           for step in json.loads(judged.json())['steps']], dtype=float)
+        ratio.stairs(_extreme(np.nanmax, bounds), edges, baseline=None, color='#9db6c9',
+                     linewidth=1.2, label='not solved: no more than')
+        ratio.legend(loc='upper left', frameon=False)
     margin.stairs(_extreme(np.nanmin, stages['margin_mm']), edges, baseline=None,
                   color=_MARGIN_INK, linewidth=1.6)
     _limit(ratio, 1, _RATIO_WORDS)

@@ -3,6 +3,7 @@
 """What may come next: places for a module, steps, orders, moves."""
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Optional, Union
 
@@ -113,7 +114,7 @@ class Places(_Texts, Drawn):
         """Best first: safe ones by ascending load ratio, then undecided, overload, unstable.
 
         Fields: ``cell`` (3), ``verdict`` (0 safe, 1 overload, 2 unstable, 3 undecided),
-        ``load_ratio_max`` and ``margin_mm`` (NaN where none is known).
+        ``load_ratio_max`` and ``margin_mm`` (NaN where none is known, or only a bound).
         """
         return self._held.candidates
 
@@ -123,6 +124,11 @@ class Places(_Texts, Drawn):
         candidates = self.candidates
         cells: npt.NDArray[np.int32] = candidates['cell'][candidates['verdict'] == 0]
         return cells
+
+    @property
+    def open_count(self) -> int:
+        """The number of places of which nothing is known, as time ended the search."""
+        return self._held.open_count
 
     def _drawn(self, asked: _core.Figure) -> str:
         """With a ghost in every place."""
@@ -136,10 +142,14 @@ class Places(_Texts, Drawn):
 
 
 def next_places(robot: Union[Robot, Path], *, threads: int = 0, memory: float = 4,
-                bonded: bool = False, progress: Progress = None) -> Places:
+                bonded: bool = False, exact: bool = False, seconds: float = math.inf,
+                progress: Progress = None) -> Places:
     """Where may the next module go? See `Robot.next`.
 
-    `progress` is called with (places judged, of how many).
+    Most places of robots of more than 3,000 modules are certified by a bound of the load ratio;
+    `exact` finds it for all. The search ends after `seconds`: places that nobody has judged by then
+    are left out, and `Places.open_count` says how many. `progress` is called with (places judged,
+    of how many).
 
     >>> robot = Robot([[0, 0, 0], [1, 0, 0]])
     >>> next_places(robot)
@@ -147,7 +157,7 @@ def next_places(robot: Union[Robot, Path], *, threads: int = 0, memory: float = 
     """
     with told(progress, 'next', is_counted=True) as tell:
         places: Places = Places._of(
-            _core.next(_robot(robot)._held, threads, memory, bonded, tell))
+            _core.next(_robot(robot)._held, threads, memory, bonded, exact, seconds, tell))
     return places
 
 
@@ -195,7 +205,8 @@ class Steps(_Texts, Judged, Drawn):
         """What each stage was found to be: (steps, 3), release, shift, connect.
 
         Fields: ``verdict`` (0 safe, 1 overload, 2 unstable, 3 undecided), ``load_ratio_max``,
-        ``margin_mm`` (NaN where none is known).
+        ``margin_mm`` (NaN where none is known; a load ratio that is only proved not to exceed a
+        bound counts in `load_ratio_bound` alone).
         """
         return self._held.stages
 
@@ -211,8 +222,13 @@ class Steps(_Texts, Judged, Drawn):
 
     @property
     def load_ratio_max(self) -> Optional[float]:
-        """The largest load ratio of all stages (Eq. 17)."""
+        """The largest load ratio of all stages that were solved (Eq. 17)."""
         return self._held.load_ratio_max
+
+    @property
+    def load_ratio_bound(self) -> Optional[float]:
+        """What no stage exceeds, where some are certified by a bound; None if all were solved."""
+        return self._held.load_ratio_bound
 
     @property
     def margin_min_mm(self) -> Optional[float]:
@@ -252,12 +268,13 @@ def _stage(place: Optional[tuple[int, int]]) -> Optional[tuple[int, Stage]]:
 
 def steps(robot: Union[Robot, Path], plan: Optional[Sequence[Mapping[str, Any]]] = None, *,
           threads: int = 0, memory: float = 4, ends_when_unsafe: bool = False,
-          progress: Progress = None) -> Steps:
+          exact: bool = False, progress: Progress = None) -> Steps:
     """Is every stage of every step safe?
 
     `plan` is a list of steps as in holdfast JSON, ``[{'attach': [...]}, {'move': [{'from': ...,
     'to': ...}]}]``; without it the robot's own steps are judged. `progress` is called with (steps
-    judged, of how many).
+    judged, of how many). `exact` solves every stage, also of robots of more than 256 modules: of
+    these most stages of steps that only attach, or only detach, are certified by a bound.
 
     >>> tower = Robot([[0, 0, 0], [1, 0, 0]])
     >>> steps(tower, [{'attach': [[0, 0, 1]]}, {'attach': [[0, 0, 2], [0, 0, 3]]}])
@@ -268,7 +285,7 @@ def steps(robot: Union[Robot, Path], plan: Optional[Sequence[Mapping[str, Any]]]
         start = start.with_steps(plan)
     with told(progress, 'steps', is_counted=True) as tell:
         judged: Steps = Steps._of(
-            _core.steps(start._held, threads, memory, ends_when_unsafe, tell))
+            _core.steps(start._held, threads, memory, ends_when_unsafe, exact, tell))
     judged.robot = start
     return judged
 

@@ -56,6 +56,13 @@ JudgementRow row_of(const Judged& judged) {
           .margin_mm = judged.margin_mm.value_or(kNone)};
 }
 
+/// The row without a load ratio that is only a bound.
+JudgementRow solved_row_of(const plan::Judgement& judged) {
+  JudgementRow row = row_of(judged);
+  row.load_ratio_max = judged.is_bound ? kNone : row.load_ratio_max;
+  return row;
+}
+
 template <class Judged>
 JudgementRow row_at(const base::Cell& cell, const Judged& judged) {
   JudgementRow row = row_of(judged);
@@ -65,11 +72,18 @@ JudgementRow row_at(const base::Cell& cell, const Judged& judged) {
   return row;
 }
 
+double seconds_of(const py::handle& given, const char* what) {
+  return number_of(given, what, 0, std::numeric_limits<double>::infinity());
+}
+
 std::shared_ptr<Places> next(const SharedStructure& structure, const py::handle& threads,
-                             const py::handle& memory, bool is_bonded, py::object progress) {
+                             const py::handle& memory, bool is_bonded, bool is_exact,
+                             const py::handle& seconds, py::object progress) {
   expect_one_piece(*structure, "next()");
   Watch watch(std::move(progress));
-  NextOptions options{.check = check_options(threads, memory, is_bonded)};
+  NextOptions options{.check = check_options(threads, memory, is_bonded),
+                      .is_exact = is_exact,
+                      .seconds_max = seconds_of(seconds, "seconds")};
   options.progress = [&](std::size_t done, std::size_t count) { watch(done, count); };
   return without_gil(
       watch, [&] { return std::make_shared<Places>(structure, find_next(*structure, options)); });
@@ -108,7 +122,7 @@ py::dict remedies(const SharedCheck& check, const py::handle& threads, const py:
 }
 
 std::shared_ptr<JudgedSteps> steps(const SharedStructure& structure, const py::handle& threads,
-                                   const py::handle& memory, bool ends_when_unsafe,
+                                   const py::handle& memory, bool ends_when_unsafe, bool is_exact,
                                    py::object progress) {
   const CheckOptions check = check_options(threads, memory, false);
   const std::size_t count = io::step_count(structure->document);
@@ -120,6 +134,7 @@ std::shared_ptr<JudgedSteps> steps(const SharedStructure& structure, const py::h
       .thread_count = check.thread_count,
       .memory_bytes_max = check.memory_bytes_max,
       .ends_when_unsafe = ends_when_unsafe,
+      .is_exact = is_exact,
       .progress = [&](std::size_t judged_count) { watch(judged_count, count); }};
   auto judged = std::make_shared<JudgedSteps>(StepsFile{.name = structure->name,
                                                         .document = structure->document,
@@ -135,7 +150,7 @@ py::array stages(const JudgedSteps& judged) {
   std::vector<JudgementRow> rows;
   for (const plan::StepJudgement& step : judged.result.judgement.steps) {
     for (const plan::StageJudgement& stage : step.stages) {
-      rows.push_back(row_of(stage));
+      rows.push_back(solved_row_of(stage));
     }
   }
   return rows_of(rows, false).attr("reshape")(-1, 3);
@@ -143,10 +158,6 @@ py::array stages(const JudgedSteps& judged) {
 
 std::optional<std::pair<std::size_t, int>> place_of(const std::optional<plan::StageId>& id) {
   return id ? std::optional(std::pair(id->step, static_cast<int>(id->stage))) : std::nullopt;
-}
-
-double seconds_of(const py::handle& given, const char* what) {
-  return number_of(given, what, 0, std::numeric_limits<double>::infinity());
 }
 
 std::shared_ptr<io::OrderReport> order(const Structure& target, const py::handle& start,
@@ -210,8 +221,7 @@ py::list order_batches(const io::OrderReport& report) {
 py::array order_judgements(const io::OrderReport& report) {
   std::vector<JudgementRow> rows;
   for (const plan::Judgement& judgement : report.result.order.judgements) {
-    JudgementRow& row = rows.emplace_back(row_of(judgement));
-    row.load_ratio_max = judgement.is_bound ? kNone : row.load_ratio_max;
+    rows.push_back(solved_row_of(judgement));
   }
   if (report.is_reversed) {
     std::ranges::reverse(rows);
@@ -303,6 +313,7 @@ void add_places(py::module_& module) {
       .def_property_readonly("structure", [](const Places& p) { return p.structure; })
       .def_property_readonly("candidates", &candidates)
       .def_property_readonly("check_count", [](const Places& p) { return p.result.check_count; })
+      .def_property_readonly("open_count", [](const Places& p) { return p.result.open_count; })
       .def_property_readonly("seconds", [](const Places& p) { return p.result.seconds; })
       .def("json",
            [](const Places& p) {
@@ -332,6 +343,9 @@ void add_steps(py::module_& module) {
           [](const JudgedSteps& s) { return place_of(s.result.judgement.first_undecided); })
       .def_property_readonly("load_ratio_max",
                              [](const JudgedSteps& s) { return s.result.judgement.load_ratio_max; })
+      .def_property_readonly(
+          "load_ratio_bound",
+          [](const JudgedSteps& s) { return s.result.judgement.load_ratio_bound; })
       .def_property_readonly("margin_min_mm",
                              [](const JudgedSteps& s) { return s.result.judgement.margin_min_mm; })
       .def_property_readonly("seconds", [](const JudgedSteps& s) { return s.result.seconds; })

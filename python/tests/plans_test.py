@@ -224,6 +224,29 @@ def test_loads_move_and_leave_with_their_modules():
     holdfast.animate(holdfast.order(robot))
 
 
+def test_steps_of_a_large_robot_are_certified_unless_all_are_to_be_exact():
+    plan = holdfast.order(holdfast.generate('tower', 30)).robot()
+    certified, exact = holdfast.steps(plan), holdfast.steps(plan, exact=True)
+    assert certified.verdict is exact.verdict is Verdict.SAFE
+    assert exact.load_ratio_bound is None
+    assert exact.load_ratio_max <= certified.load_ratio_bound + 1e-4
+    assert np.isnan(certified.stages['load_ratio_max'][1:]).any()
+    np.testing.assert_allclose(certified.stages['margin_mm'], exact.stages['margin_mm'], atol=1e-6)
+    assert not np.isnan(exact.stages['load_ratio_max'][1:]).any()
+
+
+def test_places_that_nobody_has_judged_are_counted():
+    robot = Robot([[0, 0, 0], [1, 0, 0]])
+    known, none = robot.next(), robot.next(seconds=0)
+    assert known.open_count == 0 and len(known) > 0
+    assert len(none) == 0 and none.open_count >= len(known)
+    large = holdfast.generate('cube', 15)
+    certified, exact = large.next(), large.next(exact=True)
+    assert np.isnan(certified.candidates['load_ratio_max']).all()
+    assert not np.isnan(exact.candidates['load_ratio_max']).any()
+    assert len(certified.safe) == len(exact.safe)
+
+
 def test_a_bound_is_no_load_ratio():
     order = holdfast.order(Robot([[0, 0, 0], [-1, 0, 0]], planned=[[0, -1, 0], [0, -2, 0]],
                                  fixed=[[0, 0, 0]]))

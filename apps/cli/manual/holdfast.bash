@@ -64,7 +64,7 @@ _holdfast() {
         --html) files=1 ;;
         --vtk) files=1 ;;
         --threads) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --json --svg --size --title --grey --view --no-legend --step --strip --html --vtk --until-unsafe --verify -q --quiet --threads"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --json --svg --size --title --grey --view --no-legend --step --strip --html --vtk --until-unsafe --exact --verify -q --quiet --threads"; else files=1; fi ;;
       esac
       ;;
     next)
@@ -81,9 +81,10 @@ _holdfast() {
         --title) : ;;
         --view) words="iso front side top" ;;
         --limit) : ;;
+        --seconds) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --json --svg --size --title --grey --view --no-legend --limit -q --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --json --svg --size --title --grey --view --no-legend --limit --exact --seconds -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     order)

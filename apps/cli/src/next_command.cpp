@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <limits>
 #include <memory>
 
 #include "commands.hpp"
 #include "figure.hpp"
 #include "file_clash.hpp"
 #include "holdfast/trial.hpp"
+#include "interruption.hpp"
 #include "plan_failure_options.hpp"
 #include "progress.hpp"
 #include "reading.hpp"
@@ -25,6 +27,8 @@ struct NextArguments {
   NextReportOptions report;
   bool is_quiet = false;
   bool is_bonded = false;
+  bool is_exact = false;
+  double seconds = std::numeric_limits<double>::infinity();
   int thread_count = 0;
   double memory_gb = 4;
 
@@ -63,14 +67,19 @@ int run(const NextArguments& options) {
       .is_bonded = options.is_bonded,
       .thread_count = options.thread_count,
       .memory_bytes_max = static_cast<std::size_t>(options.memory_gb * 1073741824.0)};
-  const NextResult result =
-      find_next(structure.value(),
-                {.check = check_options, .progress = [&](std::size_t done, std::size_t count) {
-                   progress.show([&] {
-                     return fmt::format("{}: {} of {} judged", io::one_line(options.file), done,
-                                        host::counted(count, "place"));
-                   });
-                 }});
+  const Interruption interruption;
+  const NextResult result = find_next(
+      structure.value(), {.check = check_options,
+                          .is_exact = options.is_exact,
+                          .best_count = options.report.count_max,
+                          .seconds_max = options.seconds,
+                          .is_interrupted = Interruption::is_here,
+                          .progress = [&](std::size_t done, std::size_t count) {
+                            progress.show([&] {
+                              return fmt::format("{}: {} of {} judged", io::one_line(options.file),
+                                                 done, host::counted(count, "place"));
+                            });
+                          }});
   if (!options.is_quiet && leaves_standard_output(options.outputs())) {
     fmt::print("{}", next_text(structure.value(), result, options.report));
   }
@@ -86,7 +95,7 @@ int exit_code_of(const NextResult& result) {
   if (result.count(Verdict::kSafe) > 0) {
     return kExitSafe;
   }
-  return result.count(Verdict::kUndecided) > 0 ? kExitUndecided : kExitUnsafe;
+  return result.count(Verdict::kUndecided) + result.open_count > 0 ? kExitUndecided : kExitUnsafe;
 }
 
 Command add_next(CLI::App& app) {
@@ -101,10 +110,19 @@ Command add_next(CLI::App& app) {
   add_figure(*command, options->figure, "Draw the structure and a ghost in every place");
   command
       ->add_option("--limit", options->report.count_max,
-                   "List the best N places only; 0: all of them")
+                   "List the best N places only; 0: all of them. Of large robots others are left "
+                   "open as soon as these are certain")
       ->type_name("N")
       ->check(CLI::Range(0, 1'000'000'000))
       ->capture_default_str();
+  command->add_flag(
+      "--exact", options->is_exact,
+      fmt::format("Find the load ratio of every place, the default up to {} modules; of larger "
+                  "robots most places are certified by a bound of it only",
+                  kNextExactModuleCount));
+  command->add_option("--seconds", options->seconds, "Judge no further place after this time")
+      ->type_name("S")
+      ->check(number_between(0.0, 1e6));
   add_quiet(*command, options->is_quiet);
   command->add_flag("--bonded", options->is_bonded,
                     "Treat the ground as glued: supports can neither lift nor tilt");
@@ -112,18 +130,19 @@ Command add_next(CLI::App& app) {
   command->add_option("--memory", options->memory_gb, "Most memory for the solver, GB")
       ->check(number_between(0.01, 1024.0))
       ->capture_default_str();
-  return {command,
-          [options] { return run(*options); },
-          {.examples = {{"next arm.json", "where may the next module go?"},
-                        {"next arm.json --limit 5", "the five best places"},
-                        {"next arm.json --svg places.svg", "draw every place"}},
-           .notes = "Places are listed best first: the safe ones by ascending load ratio, then "
-                    "undecided, overload and unstable ones. A place has the verdict of holdfast "
-                    "check with a planned module there.",
-           .exits = {{kExitSafe, "a place is safe"},
-                     {kExitUnsafe, "no place is safe"},
-                     {kExitUndecided, "no place is known to be safe, but some are undecided"},
-                     kUnreadable}}};
+  return {
+      command,
+      [options] { return run(*options); },
+      {.examples = {{"next arm.json", "where may the next module go?"},
+                    {"next arm.json --limit 5", "the five best places"},
+                    {"next arm.json --svg places.svg", "draw every place"}},
+       .notes = "Places are listed best first: the safe ones by ascending load ratio, then "
+                "undecided, overload and unstable ones. A place has the verdict of holdfast "
+                "check with a planned module there.",
+       .exits = {{kExitSafe, "a place is safe"},
+                 {kExitUnsafe, "no place is safe"},
+                 {kExitUndecided, "no place is known to be safe, but some are undecided or open"},
+                 kUnreadable}}};
 }
 
 }  // namespace holdfast::cli

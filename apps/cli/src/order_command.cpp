@@ -260,7 +260,7 @@ void add_limits(CLI::App& command, OrderArguments& options) {
       "--exact", options.is_exact,
       fmt::format("Solve every state exactly, the default up to {} modules; of larger robots most "
                   "states are certified by a bound of their load ratio only",
-                  kExactModuleCount));
+                  plan::kExactModuleCount));
   command.add_option("--seconds", options.seconds, "Give up after this time")
       ->type_name("S")
       ->check(number_between(0.0, 1e6))

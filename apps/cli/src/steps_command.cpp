@@ -30,6 +30,7 @@ struct StepsArguments {
   bool is_strip = false;
   bool is_quiet = false;
   bool ends_when_unsafe = false;
+  bool is_exact = false;
   bool is_certificate = false;
   int thread_count = 0;
 
@@ -46,6 +47,7 @@ StepsOptions judging(const StepsArguments& options, const StepsFile& file, Progr
                      const char* verb) {
   return {.thread_count = options.thread_count,
           .ends_when_unsafe = options.ends_when_unsafe,
+          .is_exact = options.is_exact,
           .progress = [&options, &progress, verb,
                        count = io::step_count(file.document)](std::size_t done) {
             progress.show([&] {
@@ -278,6 +280,12 @@ Command add_steps(CLI::App& app) {
              "Write a .pvd file for ParaView, and a .vtu file beside it for every step");
   command->add_flag("--until-unsafe", options->ends_when_unsafe,
                     "Leave out the steps behind the first unsafe one");
+  command->add_flag(
+      "--exact", options->is_exact,
+      fmt::format("Solve every stage exactly, the default up to {} modules; of larger robots most "
+                  "stages of steps that only attach, or only detach, are certified by a bound of "
+                  "their load ratio only",
+                  plan::kExactModuleCount));
   command
       ->add_flag("--verify", options->is_certificate,
                  "FILE is a certificate that there is no order, of holdfast order: replay it")
@@ -285,7 +293,8 @@ Command add_steps(CLI::App& app) {
       ->excludes("--svg")
       ->excludes("--html")
       ->excludes("--vtk")
-      ->excludes("--until-unsafe");
+      ->excludes("--until-unsafe")
+      ->excludes("--exact");
   add_quiet(*command, options->is_quiet);
   command->add_option("--threads", options->thread_count, "0: all cores; the answer is the same")
       ->check(CLI::Range(0, 64));

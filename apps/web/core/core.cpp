@@ -520,7 +520,7 @@ Reply judge_steps_request(const Request& request) {
   }
   const std::string name = document.value().name;
   const StepsFile file{.name = name, .document = std::move(document).value(), .warnings = {}};
-  const auto result = judge_steps(file);
+  const auto result = judge_steps(file, {.is_exact = true});
   if (!result) {
     return failure(result.error());
   }

@@ -23,6 +23,9 @@ void write_candidate(io::JsonStream& json, const Trial& trial) {
   json.member("cell", trial.cell);
   json.member("verdict", verdict::name(trial.verdict));
   json.member("load_ratio_max", trial.load_ratio_max);
+  if (trial.load_ratio_bound) {
+    json.member("load_ratio_bound", trial.load_ratio_bound);
+  }
   json.member("margin_mm", trial.margin_mm);
   if (trial.is_bent) {
     json.member("reason", "second_order");
@@ -47,6 +50,9 @@ void write_next_members(io::JsonStream& json, const Structure& structure, const 
     write_candidate(json, trial);
   }
   json.end_array();
+  if (result.open_count > 0) {
+    json.member("open", result.open_count);
+  }
   json.member("checks", result.check_count);
   json.member("preparation_seconds", result.preparation_seconds);
   json.member("seconds", result.seconds);
@@ -73,13 +79,19 @@ std::string next_text(const Structure& structure, const NextResult& result,
       host::counted(result.candidates.size(), "place"), result.count(Verdict::kSafe),
       result.count(Verdict::kUndecided), result.count(Verdict::kOverload),
       result.count(Verdict::kUnstable));
+  if (result.open_count > 0) {
+    text += fmt::format("  judged {} of {}; the rest is open\n", result.candidates.size(),
+                        host::counted(result.candidates.size() + result.open_count, "place"));
+  }
   const auto list = listed(result, options);
   if (!list.empty()) {
     text += fmt::format("  {:<10} {:>10} {:>12}  {}\n", "verdict", "load ratio", "margin", "cell");
   }
   for (const Trial& trial : list) {
-    const std::string ratio =
-        trial.load_ratio_max ? io::beside_one(*trial.load_ratio_max, 4) : std::string("-");
+    const std::string ratio = trial.load_ratio_bound
+                                  ? "<" + io::beside_one(*trial.load_ratio_bound, 4)
+                              : trial.load_ratio_max ? io::beside_one(*trial.load_ratio_max, 4)
+                                                     : std::string("-");
     const std::string margin =
         trial.margin_mm ? host::fixed(*trial.margin_mm, 2) + " mm" : std::string("-");
     text += fmt::format("  {:<10} {:>10} {:>12}  {}\n", verdict::name(trial.verdict), ratio, margin,
@@ -105,7 +117,9 @@ std::string next_svg(const Structure& structure, const CheckResult& checked,
   std::vector<io::Ghost> ghosts;
   for (const Trial& trial : listed(result, options)) {
     grown.planned.push_back(trial.cell);
-    ghosts.push_back({.verdict = trial.verdict, .load_ratio_max = trial.load_ratio_max});
+    ghosts.push_back(
+        {.verdict = trial.verdict,
+         .load_ratio_max = trial.load_ratio_bound ? trial.load_ratio_bound : trial.load_ratio_max});
   }
   const auto robot = model::Robot::create(grown);
   if (!robot) {

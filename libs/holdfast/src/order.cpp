@@ -30,7 +30,8 @@ base::Result<io::OrderReport> seek_order(const io::Document& target, const Order
        .is_interrupted = request.is_interrupted,
        .told_end = request.is_reversed ? plan::Sense::kShrinking : plan::Sense::kGrowing,
        .progress = request.progress,
-       .is_exact = request.is_exact || report.task.target.existing.size() <= kExactModuleCount,
+       .is_exact =
+           request.is_exact || report.task.target.existing.size() <= plan::kExactModuleCount,
        .thread_count = request.thread_count});
   if (!result) {
     return io::with_other_lattice(result.error(), target);

@@ -134,7 +134,7 @@ base::Result<SimulatedStages> simulate_stages(
   if (!sequence) {
     return sequence.error();
   }
-  auto exact = judge_steps(file);
+  auto exact = judge_steps(file, {.is_exact = true});
   if (!exact) {
     return exact.error();
   }

@@ -55,6 +55,9 @@ base::Result<StepsResult> judge_steps(const StepsFile& file, const StepsOptions&
   }
   plan::SequenceOptions more;
   more.ends_when_unsafe = options.ends_when_unsafe;
+  if (!options.is_exact) {
+    more.solved_count_max = plan::kExactModuleCount;
+  }
   more.progress = options.progress;
   more.solver.thread_count = options.thread_count;
   more.solver.memory_bytes_max = options.memory_bytes_max;

@@ -21,10 +21,13 @@ plan::CandidateOptions candidate_options(const CheckOptions& options) {
 }
 
 Trial trial_of(const plan::Candidate& candidate) {
+  const bool is_bound = candidate.judgement.is_bound;
+  const std::optional<double>& ratio = candidate.judgement.load_ratio_max;
   return {.cell = candidate.cell,
           .is_robot = candidate.is_robot,
           .verdict = candidate.judgement.verdict,
-          .load_ratio_max = candidate.judgement.load_ratio_max,
+          .load_ratio_max = is_bound ? std::nullopt : ratio,
+          .load_ratio_bound = is_bound ? ratio : std::nullopt,
           .margin_mm = candidate.judgement.margin_mm,
           .is_bent = candidate.judgement.is_bent};
 }
@@ -111,10 +114,17 @@ NextResult find_next(const Structure& structure, const NextOptions& options) {
   HOLDFAST_CHECK(spec.has_value());  // The structure's robot was made of it.
   plan::CandidateOptions how = candidate_options(options.check);
   how.progress = options.progress;
+  how.solved_count_max = kNextExactModuleCount;
+  how.is_exact = options.is_exact;
+  how.best_count = options.best_count;
+  how.seconds_max = options.seconds_max;
+  how.is_interrupted = options.is_interrupted;
   plan::CandidateReport report =
       plan::judge_candidates(spec.value(), plan::free_cells(spec.value()), how);
+  const auto open_count = std::ranges::count_if(report.candidates, &plan::Candidate::is_open);
   plan::sort_candidates(report.candidates);
   return {.candidates = trials_of(report.candidates),
+          .open_count = static_cast<std::size_t>(open_count),
           .check_count = report.check_count,
           .preparation_seconds = report.preparation_seconds,
           .seconds = report.seconds};

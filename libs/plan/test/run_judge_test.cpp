@@ -48,7 +48,8 @@ TEST(RunJudge, certifies_what_checks_find_safe_and_within_its_bound) {
            {"growth", 300}, {"cube", 7}, {"tower", 40}, {"ball", 9}}) {
     const Growing run = growing_of(holdfast::test::family_spec(family, size), 40);
     RunJudge judge(run.spec, run.target, 1);
-    const auto judged = judge.judge(run.begin, Sense::kGrowing, run.order, is_never_late);
+    const auto judged =
+        judge.judge(run.begin, Sense::kGrowing, run.order, {.is_late = is_never_late});
     ASSERT_EQ(judged.size(), run.order.size()) << family;
     ElementSet state = run.begin;
     for (std::size_t i = 0; i < judged.size(); ++i) {
@@ -68,8 +69,8 @@ TEST(RunJudge, says_the_same_with_any_number_of_threads) {
   const Growing run = growing_of(holdfast::test::family_spec("growth", 300), 60);
   RunJudge one(run.spec, run.target, 1);
   RunJudge three(run.spec, run.target, 3);
-  EXPECT_EQ(one.judge(run.begin, Sense::kGrowing, run.order, is_never_late),
-            three.judge(run.begin, Sense::kGrowing, run.order, is_never_late));
+  EXPECT_EQ(one.judge(run.begin, Sense::kGrowing, run.order, {.is_late = is_never_late}),
+            three.judge(run.begin, Sense::kGrowing, run.order, {.is_late = is_never_late}));
 }
 
 TEST(RunJudge, ends_at_the_first_state_that_is_not_safe) {
@@ -80,7 +81,8 @@ TEST(RunJudge, ends_at_the_first_state_that_is_not_safe) {
   }
   const Growing run = growing_of(spec, 7);
   RunJudge judge(run.spec, run.target, 1);
-  const auto judged = judge.judge(run.begin, Sense::kGrowing, run.order, is_never_late);
+  const auto judged =
+      judge.judge(run.begin, Sense::kGrowing, run.order, {.is_late = is_never_late});
   ASSERT_FALSE(judged.empty());
   EXPECT_LT(judged.size(), run.order.size());
   EXPECT_EQ(judged.back().verdict, Verdict::kUnstable);
@@ -95,7 +97,7 @@ TEST(RunJudge, solves_every_state_on_a_way_back) {
   std::ranges::for_each(back, [&](Element element) { whole.insert(element); });
   std::ranges::reverse(back);
   RunJudge judge(run.spec, run.target, 1);
-  const auto judged = judge.judge(whole, Sense::kShrinking, back, is_never_late);
+  const auto judged = judge.judge(whole, Sense::kShrinking, back, {.is_late = is_never_late});
   EXPECT_EQ(judged.size(), back.size());
   EXPECT_TRUE(std::ranges::none_of(judged, &Judgement::is_bound));
 }

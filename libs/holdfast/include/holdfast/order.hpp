@@ -24,10 +24,6 @@
 ///         { ... }
 namespace holdfast {
 
-/// All states on the way of robots of so many modules at most are solved in the end, which takes a
-/// tenth of a second.
-inline constexpr std::size_t kExactModuleCount = 256;
-
 struct OrderRequest {
   std::vector<base::Cell> start = {};  ///< As of plan::OrderTask.
   plan::ReachRule rule = {};
@@ -37,7 +33,7 @@ struct OrderRequest {
   double seconds_max = std::numeric_limits<double>::infinity();
   double help_seconds_max = 0;  ///< Where there is no order: time to seek help; 0: none is sought.
   /// Whether all states on the way are solved in the end, also of robots of more than
-  /// kExactModuleCount modules, most of whose states are certified by a bound.
+  /// plan::kExactModuleCount modules, most of whose states are certified by a bound.
   bool is_exact = false;
   int thread_count = 0;  ///< 0: as many as the machine has cores; decides nothing.
   /// A function that several threads call all the time; once it returns true the search ends, and

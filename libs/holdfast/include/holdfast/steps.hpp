@@ -38,6 +38,10 @@ struct StepsOptions {
   int thread_count = 0;  ///< 0: as many as the machine has cores. The result does not depend on it.
   std::size_t memory_bytes_max = solver::EquilibriumOptions{}.memory_bytes_max;  ///< Per thread.
   bool ends_when_unsafe = false;  ///< Steps behind the first unsafe one are left out.
+  /// Whether every stage is solved, also where steps only attach, or only detach, and the robot
+  /// comes to have more than plan::kExactModuleCount modules: most stages of such steps are
+  /// certified by a bound instead.
+  bool is_exact = false;
   std::function<void(std::size_t judged_count)> progress = {};  ///< Called between steps.
 };
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <ostream>
@@ -55,8 +56,11 @@ struct Trial {
   /// rest is void then.
   bool is_robot = false;
   verdict::Verdict verdict = verdict::Verdict::kUndecided;
-  /// The largest load ratio; none where no load is known, as for a robot that topples.
+  /// The largest load ratio; none where no load is known, as for a robot that topples, or only a
+  /// bound.
   std::optional<double> load_ratio_max = {};
+  /// What the largest load ratio does not exceed, where the robot was certified by a bound.
+  std::optional<double> load_ratio_bound = {};
   /// The margin of verdict::RigidBody in mm: negative for a robot that topples, none for one that
   /// is fixed.
   std::optional<double> margin_mm = {};
@@ -88,9 +92,21 @@ class CellTrials {
 std::vector<Trial> try_cells(const model::RobotSpec& spec, std::span<const base::Cell> cells,
                              Role role = Role::kPlanned, const CheckOptions& options = {});
 
+/// Robots of so many modules at most have load ratios for all places; of larger ones most places
+/// are certified by a bound of it. Factorizations of such robots take a second or two.
+inline constexpr std::size_t kNextExactModuleCount = 3000;
+
 /// The options of a search for places.
 struct NextOptions {
   CheckOptions check = {};
+  /// Whether all load ratios are found, also of robots of more than kNextExactModuleCount modules.
+  bool is_exact = false;
+  /// The number of the best places that are wanted; others of a large robot may stay open, or known
+  /// by a bound only, as soon as these are certain. 0: all.
+  std::size_t best_count = 0;
+  /// The search ends after this time, or once is_interrupted() says so, with what is known by then.
+  double seconds_max = std::numeric_limits<double>::infinity();
+  std::function<bool()> is_interrupted = {};
   /// A function that is called now and then with the number of places that are judged, and of all.
   std::function<void(std::size_t done, std::size_t count)> progress = {};
 };
@@ -100,6 +116,7 @@ struct NextResult {
   /// All free cells beside the robot where a module can be, best first: the safe by ascending load
   /// ratio, then those undecided, overloaded and unstable, these by descending margin.
   std::vector<Trial> candidates;
+  std::size_t open_count = 0;      ///< Places of which nothing is known.
   std::size_t check_count = 0;     ///< So many took a check of their own.
   double preparation_seconds = 0;  ///< Spent on the robot as it is.
   double seconds = 0;              ///< In all.

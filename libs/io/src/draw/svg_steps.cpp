@@ -192,7 +192,11 @@ std::string write_steps_svg(const StepsEntry& entry, const FigureOptions& figure
            kInk);
   add_bands(out, columns, figure.is_grey);
   add_curve(out, columns,
-            {.value = &Column::ratio, .title = "largest load ratio", .limit = 1, .ink = "#2f6690"},
+            {.value = &Column::ratio,
+             .title = entry.judgement->load_ratio_bound ? "largest load ratio, or a bound of it"
+                                                        : "largest load ratio",
+             .limit = 1,
+             .ink = "#2f6690"},
             first_panel);
   add_curve(out, columns,
             {.value = &Column::margin, .title = "margin, mm", .limit = 0, .ink = "#3f6b7d"},

@@ -33,7 +33,11 @@ void write_stage(JsonStream& json, const plan::StageJudgement& stage) {
     json.value(verdict::name(reason.reason.code));
   }
   json.end_array();
-  json.member("load_ratio_max", stage.load_ratio_max);
+  const std::optional<double> none;
+  json.member("load_ratio_max", stage.is_bound ? none : stage.load_ratio_max);
+  if (stage.is_bound) {
+    json.member("load_ratio_bound", stage.load_ratio_max);
+  }
   json.member("margin_mm", stage.margin_mm);
   json.key("at");
   if (stage.worst) {
@@ -92,6 +96,9 @@ void write_steps_json(std::ostream& out, const StepsEntry& entry,
   write_stage_id(json, "first_unsafe", judged.first_unsafe);
   write_stage_id(json, "first_undecided", judged.first_undecided);
   json.member("load_ratio_max", judged.load_ratio_max);
+  if (judged.load_ratio_bound) {
+    json.member("load_ratio_bound", judged.load_ratio_bound);
+  }
   json.member("margin_min_mm", judged.margin_min_mm);
   json.key("steps");
   json.begin_array();

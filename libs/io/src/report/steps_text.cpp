@@ -31,9 +31,11 @@ bool is_safe(const plan::StepJudgement& step) {
   return std::ranges::all_of(step.stages, &plan::Judgement::is_safe);
 }
 
-/// Writes "0.8376 +12.00", and "-" where there is none.
+/// Writes "0.8376 +12.00", or "<0.8376" for a bound, and "-" where there is none.
 std::string numbers_text(const StageJudgement& stage) {
-  const std::string ratio = stage.load_ratio_max ? beside_one(*stage.load_ratio_max, 4) : "-";
+  const std::string ratio = stage.load_ratio_max
+                                ? (stage.is_bound ? "<" : "") + beside_one(*stage.load_ratio_max, 4)
+                                : "-";
   const std::string margin =
       stage.margin_mm ? host::fixed_signed(*stage.margin_mm, 2) : std::string("-");
   return fmt::format("{:>7} {:>8}", ratio, margin);
@@ -54,7 +56,8 @@ std::set<std::size_t> listed_steps(const plan::SequenceJudgement& judged) {
   std::size_t unsafe_count = 0;
   for (std::size_t i = 0; i < judged.steps.size(); ++i) {
     const auto is_extreme = [&](const StageJudgement& stage) {
-      return (stage.load_ratio_max && stage.load_ratio_max == judged.load_ratio_max) ||
+      return (stage.load_ratio_max && !stage.is_bound &&
+              stage.load_ratio_max == judged.load_ratio_max) ||
              (stage.margin_mm && stage.margin_mm == judged.margin_min_mm);
     };
     const bool is_unsafe = !is_safe(judged.steps[i]) && unsafe_count++ < kUnsafeListedMax;
@@ -83,6 +86,16 @@ std::string id_text(const StepsEntry& entry, const plan::StageId& id, std::strin
     text += fmt::format("    {}\n", reason_text(reason.reason, reason.cells));
   }
   return text;
+}
+
+/// The largest load ratio, and what those of certified states do not exceed.
+std::string load_ratio_words(const plan::SequenceJudgement& judged) {
+  const std::string largest =
+      judged.load_ratio_max ? beside_one(*judged.load_ratio_max, 4) : "unknown";
+  return judged.load_ratio_bound
+             ? fmt::format("{} of the states that were solved, no state exceeds {}", largest,
+                           beside_one(*judged.load_ratio_bound, 4))
+             : largest;
 }
 
 void add_part(std::string& text, std::string_view verb, std::size_t count, const std::string& one) {
@@ -142,8 +155,7 @@ std::string write_steps_text(const StepsEntry& entry) {
   }
   text += fmt::format(
       "  {} of {} safe in all stages; largest load ratio {}, smallest margin {}\n", safe_count,
-      host::counted(io::step_count(*entry.document), "step"),
-      judged.load_ratio_max ? beside_one(*judged.load_ratio_max, 4) : "unknown",
+      host::counted(io::step_count(*entry.document), "step"), load_ratio_words(judged),
       judged.margin_min_mm ? host::fixed_signed(*judged.margin_min_mm, 2) + " mm" : "none (held)");
   if (judged.first_unsafe) {
     text += id_text(entry, *judged.first_unsafe, "unsafe");

@@ -235,6 +235,18 @@ void Adjoint::grow(std::size_t module) {
   pull_count_.push_back(pulls_.size());
 }
 
+void Adjoint::shrink() {
+  const std::size_t module = at(grown_modules_.back());
+  local_.erase(module);
+  place_[module] = kAbsent;
+  grown_.pop_back();
+  grown_modules_.pop_back();
+  gram_.pop_back();
+  lift_.pop_back();
+  pull_count_.pop_back();
+  pulls_.resize(pull_count_.back());
+}
+
 /// Finds the pulls of a module that has grown. It is in balance itself; one that is connected to a
 /// single other one moves with that and pulls at nothing.
 void Adjoint::find_pulls(std::size_t module) {

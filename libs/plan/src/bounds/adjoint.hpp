@@ -144,6 +144,9 @@ class Adjoint {
   /// Continues z to a module beside one that z is known for.
   void grow(std::size_t module);
 
+  /// Forgets the module that z has been continued to last, after grow_to().
+  void shrink();
+
   /// How many modules a state on the way has beyond the core; none if it is not on the way.
   std::optional<std::size_t> count_in(const std::vector<Element>& elements) const;
 
@@ -246,6 +249,9 @@ class WatchedFacets {
 
   /// A module was attached.
   void attach(std::size_t module) { attached_.push_back(module); }
+
+  /// The module that was attached last is taken away again.
+  void detach_last() { attached_.pop_back(); }
 
   /// The robot that is there now has got better displacements: modules that were there when it was
   /// solved have moved so far since, in the energy norm.

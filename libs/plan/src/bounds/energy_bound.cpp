@@ -43,9 +43,10 @@ bool is_plain(const model::Robot& target) {
 }  // namespace
 
 EnergyBound::EnergyBound(const model::Robot& target, const LocalAdjoints& nearby,
-                         const Adjoints& adjoints)
+                         const Adjoints& adjoints, Use use)
     : target_(target),
       adjoints_(nearby),
+      use_(use),
       local_(target),
       beam_(model::beam_section(target.material()), target.lattice()),
       changes_(target),
@@ -164,6 +165,9 @@ void EnergyBound::look_at_facet(std::size_t index) {
   const model::Facet& facet = target_.facets()[index];
   const std::size_t module = base::at(facet.module);
   const bool is_new = nodes_[module].is_new;
+  if (!is_new) {
+    before_.looked_at.push_back(index);
+  }
   const Vec moved = trial_force(facet, u_[module]);
   changes_.weigh_facet(index, is_new ? moved : Vec{});
   Vec change = changes_.facet_change(index);
@@ -211,13 +215,21 @@ std::vector<LoadSpread::Load> EnergyBound::loads_beside(std::size_t module) cons
 }
 
 /// A module's beams carry what they do where it is now, and what they put on its neighbours goes on
-/// to supports through all modules near its way. False if that cannot be.
+/// to supports through all modules near its way, but for itself where it is to be taken back. False
+/// if that cannot be.
 bool EnergyBound::spread(std::size_t from) {
   std::vector<std::size_t> way = {from};
   while (!ends_way(way.back())) {
     way.push_back(base::at(nodes_[way.back()].way.to));
   }
-  const std::vector<LoadSpread::Share> shares = spread_.spread(way, loads_beside(from), local_);
+  const std::vector<LoadSpread::Load> loads = loads_beside(from);
+  std::span<const std::size_t> below = way;
+  if (use_ == Use::kTrying) {
+    below = below.subspan(1);
+    local_.erase(from);
+  }
+  const std::vector<LoadSpread::Share> shares = spread_.spread(below, loads, local_);
+  local_.insert(from);
   if (shares.empty()) {
     return false;
   }
@@ -305,6 +317,7 @@ bool EnergyBound::begin(const std::vector<Element>& elements, const verdict::Ass
   choose_ways(elements);
   solved_error_ = verdict::kEnergyFactor * solved.equilibrium.energy_error;
   solved_ratio_ = solved.load_ratio_max ? std::max(0.0, solved.load_ratio_range.high) : 0.0;
+  solved_ratio_low_ = solved.load_ratio_max ? solved.load_ratio_range.low : 0.0;
   for (std::size_t i = 0; i < elements.size(); ++i) {
     u_[base::at(elements[i])] = solved.equilibrium.displacement[i];
   }
@@ -488,6 +501,9 @@ std::optional<double> EnergyBound::add(Element element) {
   node.is_there = true;
   node.is_new = true;
   node.place = new_.size();
+  before_.sway = sway_[node.root];
+  before_.sway_square = sway_square_;
+  before_.looked_at.clear();
   add_sway(module);
   if (section_ != nullptr) {
     return add_above_section(module);
@@ -507,6 +523,36 @@ std::optional<double> EnergyBound::add(Element element) {
     carry(module);
   }
   return bound();
+}
+
+void EnergyBound::take_back() {
+  const std::size_t module = new_.back();
+  local_.erase(module);
+  changes_.clear();
+  sway_[nodes_[module].root] = before_.sway;
+  sway_square_ = before_.sway_square;
+  moved_ = still_moved_;
+  for (std::size_t facet = first_facet_[module]; facet < first_facet_[module + 1]; ++facet) {
+    facets_.pop_back();
+  }
+  local_.for_each_neighbour(module, [&](base::Direction /*direction*/, std::size_t other) {
+    nodes_[other].is_host = false;
+  });
+  nodes_[module] = {};
+  new_.pop_back();
+  watched_.detach_last();
+  const std::vector<std::size_t> looked_at = std::exchange(before_.looked_at, {});
+  std::ranges::for_each(looked_at, [&](std::size_t facet) { look_at_facet(facet); });
+}
+
+/// The solved load ratio is no more than that of (s + h w) / 2 and that of what it has changed by,
+/// turned round, as c(a + b) <= c(a) + c(b).
+std::optional<double> EnergyBound::ratio_low() {
+  const double radius = energy_error() / 2;
+  if (!are_pressed(radius + solved_error_ / 2)) {
+    return std::nullopt;
+  }
+  return solved_ratio_low_ - changes_.load_ratio_turned() - ratio_per_norm_ * radius;
 }
 
 std::optional<double> EnergyBound::add_above_section(std::size_t module) {

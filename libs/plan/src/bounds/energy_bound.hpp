@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <set>
@@ -61,10 +62,13 @@ namespace holdfast::plan {
 /// Serves a robot while it grows, however often it is solved on the way.
 class EnergyBound {
  public:
+  /// Whether modules that are attached stay, or are taken back one by one.
+  enum class Use : std::uint8_t { kGrowing, kTrying };
+
   /// Keeps references to the whole robot and to what is known of its facets by the modules near
   /// them; `adjoints` serve as long as modules are attached in the order in which these have grown.
   EnergyBound(const model::Robot& target, const LocalAdjoints& nearby,
-              const Adjoints& adjoints = {});
+              const Adjoints& adjoints = {}, Use use = Use::kGrowing);
 
   /// Begins with a solved robot, whose modules are `elements` of the target, in that order. False
   /// if nothing can be built on it: it is not safe, a facet tilts or is open, or the polygon does
@@ -78,6 +82,14 @@ class EnergyBound {
   /// ratio, or none if the robot may be unsafe, or where nothing was begun; it is then to be
   /// solved.
   std::optional<double> add(Element module);
+
+  /// Takes away the module that was attached last, in Use::kTrying: what is known is what it was,
+  /// to the last bit.
+  void take_back();
+
+  /// What the largest load ratio of the robot that is there now is no less than, after add() and
+  /// without a section; none if a facet may tilt.
+  std::optional<double> ratio_low();
 
   /// Goes on from better displacements of the robot that is there now, all of whose facets are
   /// stuck, by module of the target. Returns as add() does.
@@ -123,6 +135,13 @@ class EnergyBound {
     std::size_t root = 0;    ///< The module with that support.
   };
 
+  /// What take_back() restores.
+  struct Before {
+    double sway = 0;  ///< Of the module's root.
+    double sway_square = 0;
+    std::vector<std::size_t> looked_at;  ///< Facets that were there before.
+  };
+
   void choose_ways(const std::vector<Element>& elements);
   void choose_section_ways();
   void settle_new();
@@ -154,6 +173,7 @@ class EnergyBound {
 
   const model::Robot& target_;
   const LocalAdjoints& adjoints_;
+  Use use_;
   bool has_core_ = false;  ///< A solved robot was begun with.
   LocalBalance local_;
   model::LatticeBeam<double> beam_;
@@ -175,7 +195,9 @@ class EnergyBound {
   verdict::MovedMass moved_;  ///< By u_, of all modules that are there,
   verdict::MovedMass still_moved_;       ///< and when the robot was solved.
   std::map<std::size_t, int> doubtful_;  ///< As doubtful() says.
+  Before before_;
   double solved_ratio_ = 0;
+  double solved_ratio_low_ = 0;
   double solved_error_ = 0;
   const SectionResponse* section_ = nullptr;
   std::vector<std::int32_t> section_place_;  ///< By module: in the section, or -1.

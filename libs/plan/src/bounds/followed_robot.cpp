@@ -120,6 +120,23 @@ void FollowedRobot::add(Element element) {
   new_.push_back(added);
 }
 
+void FollowedRobot::take_back(const verdict::Assessment& solved) {
+  for (const NewModule& added : new_) {
+    place_[added.module] = kAbsent;
+    local_.erase(added.module);
+    u_[added.module] = {};
+  }
+  new_.clear();
+  springs_.clear();
+  solved_count_ = 0;
+  motion_error_ = 0;
+  std::ranges::fill(given_, Vec{});
+  std::ranges::fill(moved_, Vec{});
+  for (std::size_t i = 0; i < elements_.size(); ++i) {
+    u_[at(elements_[i])] = solved.equilibrium.displacement[i];
+  }
+}
+
 /// Block Gauss-Seidel, there and back. What is beside each module is looked up once for all sweeps.
 void FollowedRobot::relax(const std::vector<std::size_t>& modules) {
   struct Place {

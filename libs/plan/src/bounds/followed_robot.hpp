@@ -53,6 +53,9 @@ class FollowedRobot {
   /// Attaches a module, which must be beside one that is there, and not fixed.
   void add(Element module);
 
+  /// Takes all new modules away again: the robot is the core with the displacements `solved`.
+  void take_back(const verdict::Assessment& solved);
+
   /// The displacements by module of the target, after solve().
   const std::vector<Vec>& displacement() const { return u_; }
 

@@ -236,7 +236,7 @@ std::vector<Judgement> RobotGrowth::judge_run(const ElementSet& state, Sense sen
                                               std::span<const Element> run,
                                               const std::function<bool()>& is_late) {
   return run.size() == 1 ? GrowingStructure::judge_run(state, sense, run, is_late)
-                         : run_judge_.judge(state, sense, run, is_late);
+                         : run_judge_.judge(state, sense, run, {.is_late = is_late});
 }
 
 }  // namespace holdfast::plan

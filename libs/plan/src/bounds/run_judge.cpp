@@ -63,8 +63,9 @@ class RunJudge::Certifier {
     }
   }
 
-  /// Goes on to the next state; its judgement if it is certified.
-  std::optional<Judgement> add(Element element);
+  /// Goes on to the next state; its judgement if it is certified. Nothing is certified behind a
+  /// state that was not, until another is begun with.
+  std::optional<Judgement> add(Element element, bool is_asked);
 
   /// Goes on from the state that it has come to, solved and safe, before so many others.
   void begin(const ElementSet& state, const verdict::Assessment& solved, std::size_t left);
@@ -89,7 +90,7 @@ class RunJudge::Certifier {
   std::optional<FollowedRobot> followed_;
 };
 
-std::optional<Judgement> RunJudge::Certifier::add(Element element) {
+std::optional<Judgement> RunJudge::Certifier::add(Element element, bool is_asked) {
   Judgement judgement{.verdict = verdict::Verdict::kSafe, .is_bound = true};
   if (balance_) {
     const double pitch = target_.material().pitch_mm;
@@ -107,9 +108,11 @@ std::optional<Judgement> RunJudge::Certifier::add(Element element) {
   if (is_certified(ratio)) {
     worth_.certify(false);
   } else {
-    ratio = followed_ratio();
+    ratio = is_asked ? followed_ratio() : std::nullopt;
   }
   if (!ratio) {
+    has_bound_ = false;
+    followed_.reset();
     return std::nullopt;
   }
   judgement.load_ratio_max = judgement.load_ratio_high = ratio;
@@ -139,7 +142,8 @@ void RunJudge::Certifier::begin(const ElementSet& state, const verdict::Assessme
   followed_.reset();
   section_.reset();
   has_bound_ = false;
-  if (solved.stability_rule == verdict::StabilityRule::kPolygon && !balance_) {
+  if (solved.verdict != verdict::Verdict::kSafe ||
+      (solved.stability_rule == verdict::StabilityRule::kPolygon && !balance_)) {
     return;
   }
   const bool is_large = state.size() >= kFollowedMin;
@@ -154,25 +158,38 @@ void RunJudge::Certifier::begin(const ElementSet& state, const verdict::Assessme
   }
 }
 
-RunJudge::RunJudge(const model::RobotSpec& spec, const model::Robot& target, int thread_count)
+RunJudge::RunJudge(const model::RobotSpec& spec, const model::Robot& target, int thread_count,
+                   solver::EquilibriumOptions solver)
     : spec_(spec),
       target_(target),
       thread_count_(thread_count),
+      solver_(std::move(solver)),
       has_polygon_(verdict::is_on_flat_floor(target) && target.fixed_count() == 0),
       nearby_(target),
-      worth_(kPieceCountMax) {}
+      worth_(kPieceCountMax) {
+  solver_.thread_count = 1;
+  solver_.has_rigid_figures = false;
+}
 
-verdict::Assessment RunJudge::assess(const ElementSet& state) const {
+verdict::Assessment RunJudge::assess(const ElementSet& state) const { return solve(state, 0, {}); }
+
+verdict::Assessment RunJudge::solve(const ElementSet& state, std::size_t place,
+                                    const Wish& wish) const {
   const auto part = model::Robot::create(part_of(spec_, state), 1);
-  const solver::EquilibriumOptions options{.thread_count = 1, .has_rigid_figures = false};
-  return part ? plan::assess(part.value(), as_checked(part.value(), options))
-              : verdict::Assessment{};
+  if (!part) {
+    return {};
+  }
+  auto solved = plan::assess(part.value(), as_checked(part.value(), solver_));
+  if (wish.take_solved) {
+    wish.take_solved(place, part.value(), solved);
+  }
+  return solved;
 }
 
 /// Judges states one after another until one is not safe: those that can be certified so by what is
 /// known of the last that was solved, all others solved. No bound knows what bending does.
 void RunJudge::judge_piece(Piece& piece, Sense sense, FollowingWorth& worth,
-                           const std::function<bool()>& is_late) const {
+                           const Wish& wish) const {
   std::optional<Certifier> certifier;
   if (sense == Sense::kGrowing && !target_.is_modulus_stated()) {
     certifier.emplace(*this, piece.begin, worth);
@@ -180,17 +197,20 @@ void RunJudge::judge_piece(Piece& piece, Sense sense, FollowingWorth& worth,
   ElementSet state = piece.begin;
   std::vector<Judgement>& judgements = piece.judgements;
   for (const Element element : piece.run) {
-    if (!judgements.empty() && is_late()) {
+    if (!judgements.empty() && wish.is_late()) {
       break;
     }
+    const std::size_t place = piece.first + judgements.size();
+    const bool is_asked = !wish.is_asked || wish.is_asked(place);
     state = changed(std::move(state), sense, {&element, 1});
-    if (auto certified = certifier ? certifier->add(element) : std::nullopt) {
-      judgements.push_back(*std::move(certified));
+    auto certified = certifier ? certifier->add(element, is_asked) : std::nullopt;
+    if (certified || !is_asked) {
+      judgements.push_back(certified.value_or(Judgement{}));
       continue;
     }
-    const verdict::Assessment solved = assess(state);
+    const verdict::Assessment solved = solve(state, place, wish);
     judgements.push_back(judgement_of(solved));
-    if (!judgements.back().is_safe()) {
+    if (!judgements.back().is_safe() && !wish.goes_on) {
       break;
     }
     if (certifier) {
@@ -210,14 +230,14 @@ std::vector<RunJudge::Piece> RunJudge::pieces_of(const ElementSet& state, Sense 
   for (std::size_t first = 0; first < run.size(); first += length) {
     pieces.push_back(
         {.begin = pieces.empty() ? state : changed(pieces.back().begin, sense, pieces.back().run),
-         .run = run.subspan(first, std::min(length, run.size() - first))});
+         .run = run.subspan(first, std::min(length, run.size() - first)),
+         .first = first});
   }
   return pieces;
 }
 
 std::vector<Judgement> RunJudge::judge(const ElementSet& state, Sense sense,
-                                       std::span<const Element> run,
-                                       const std::function<bool()>& is_late) {
+                                       std::span<const Element> run, const Wish& wish) {
   if (sense == Sense::kGrowing && !target_.is_modulus_stated()) {
     grow_adjoints(state, run);
   }
@@ -229,20 +249,21 @@ std::vector<Judgement> RunJudge::judge(const ElementSet& state, Sense sense,
   team.each(std::min(count, base::at(team.thread_count())), [&](std::size_t) {
     for (std::size_t turn = taken_count++; turn < count; turn = taken_count++) {
       const std::size_t i = count - 1 - turn;
-      judge_piece(pieces[i], sense, worth_[i], is_late);
+      judge_piece(pieces[i], sense, worth_[i], wish);
     }
   });
   std::vector<Judgement> judgements;
   ElementSet reached = state;
   for (const Piece& piece : pieces) {
     judgements.insert(judgements.end(), piece.judgements.begin(), piece.judgements.end());
-    if (piece.judgements.size() < piece.run.size() || !judgements.back().is_safe()) {
+    if (piece.judgements.size() < piece.run.size() ||
+        (!judgements.back().is_safe() && !wish.goes_on)) {
       break;
     }
     reached = changed(std::move(reached), sense, piece.run);
   }
-  if (sense == Sense::kGrowing) {
-    renew_adjoints(reached, pieces, is_late);
+  if (sense == Sense::kGrowing && (!wish.goes_on || judgements.back().is_safe())) {
+    renew_adjoints(reached, pieces, wish.is_late);
   }
   return judgements;
 }

@@ -12,6 +12,7 @@
 #include "bounds/following_worth.hpp"
 #include "holdfast/model/robot.hpp"
 #include "holdfast/plan/order_search.hpp"
+#include "holdfast/solver/options.hpp"
 #include "holdfast/verdict/assessment.hpp"
 
 namespace holdfast::plan {
@@ -26,12 +27,29 @@ class RunJudge {
   /// nothing, and are in vain beyond the first unsafe one.
   static constexpr std::size_t kRunLength = 1024;
 
-  /// Keeps references to the whole robot and to what it is made of.
-  RunJudge(const model::RobotSpec& spec, const model::Robot& target, int thread_count);
+  /// What is asked of a run. Several threads call its functions.
+  struct Wish {
+    /// The run ends early once it says so.
+    std::function<bool()> is_late;
+    /// Whether the run goes on behind states that are not safe.
+    bool goes_on = false;
+    /// Whether the state after the run's element of this place is to be judged; none: every one is.
+    /// The judgement of others is void.
+    std::function<bool(std::size_t place)> is_asked = {};
+    /// Called with each state that was solved, by the place of the element before it.
+    std::function<void(std::size_t place, const model::Robot& robot,
+                       const verdict::Assessment& solved)>
+        take_solved = {};
+  };
 
-  /// Judges a run as GrowingStructure::judge_run() is to.
+  /// Keeps references to the whole robot and to what it is made of. Each state is solved by one
+  /// thread, with what else `solver` says.
+  RunJudge(const model::RobotSpec& spec, const model::Robot& target, int thread_count,
+           solver::EquilibriumOptions solver = {});
+
+  /// Judges a run as GrowingStructure::judge_run() is to, or as is wished.
   std::vector<Judgement> judge(const ElementSet& state, Sense sense, std::span<const Element> run,
-                               const std::function<bool()>& is_late);
+                               const Wish& wish);
 
   /// A check of a state from nothing, by one thread.
   verdict::Assessment assess(const ElementSet& state) const;
@@ -41,6 +59,7 @@ class RunJudge {
   struct Piece {
     ElementSet begin;  ///< The state before it.
     std::span<const Element> run;
+    std::size_t first = 0;  ///< The place of its first element in the whole run.
     std::vector<Judgement> judgements = {};
     std::map<std::size_t, int> doubtful = {};  ///< As of EnergyBound, as what follows.
     std::set<std::size_t> asked_for = {};
@@ -50,8 +69,8 @@ class RunJudge {
 
   static std::vector<Piece> pieces_of(const ElementSet& state, Sense sense,
                                       std::span<const Element> run);
-  void judge_piece(Piece& piece, Sense sense, FollowingWorth& worth,
-                   const std::function<bool()>& is_late) const;
+  void judge_piece(Piece& piece, Sense sense, FollowingWorth& worth, const Wish& wish) const;
+  verdict::Assessment solve(const ElementSet& state, std::size_t place, const Wish& wish) const;
   void grow_adjoints(const ElementSet& state, std::span<const Element> run);
   void renew_adjoints(const ElementSet& state, std::span<const Piece> pieces,
                       const std::function<bool()>& is_late);
@@ -61,6 +80,7 @@ class RunJudge {
   const model::RobotSpec& spec_;
   const model::Robot& target_;
   int thread_count_;
+  solver::EquilibriumOptions solver_;
   bool has_polygon_ = false;  ///< On a flat floor, and nothing is fixed.
   LocalAdjoints nearby_;
   Adjoints adjoints_;                  ///< Of facets that have left many states without a bound.

@@ -62,7 +62,10 @@ void ChangedForces::clear() {
     place_of_beam_[beam.index] = kNone;
   }
   beams_.clear();
-  std::ranges::fill(facets_, Spring{});
+  for (const std::size_t facet : changed_facets_) {
+    facets_[facet] = {};
+  }
+  changed_facets_.clear();
   energy_ = 0;
   load_ratio_ = 0;
 }
@@ -79,20 +82,28 @@ ChangedForces::Spring& ChangedForces::beam_from(std::size_t module, int directio
 }
 
 void ChangedForces::weigh(Spring& beam) {
-  Vec lack = beam.change;
-  Vec sum = beam.change;
-  for (std::size_t i = 0; i < 6; ++i) {
-    lack[i] -= beam.gap[i];
-    sum[i] += beam.gap[i];
-  }
-  const double energy = energy_of(lack);
+  const double energy = energy_of(base::sum_of<double>(beam.change, -1, beam.gap));
   energy_ += energy - beam.energy;
   beam.energy = energy;
+  load_ratio_ = std::max(load_ratio_, ratio_of(beam, 1) / 2);
+}
+
+/// The load ratio of the sum of what s and h w of a beam have changed by, times a factor.
+double ChangedForces::ratio_of(const Spring& beam, double factor) const {
+  Vec sum{};
+  base::add_times(sum, factor, base::sum_of<double>(beam.change, 1, beam.gap));
   const std::size_t module = beam.index / half_;
   const int direction = static_cast<int>(2 * (beam.index % half_));
   const std::size_t other = at(target_->connected()[module][at(direction)]);
-  load_ratio_ =
-      std::max(load_ratio_, connection_ratio(*target_, module, other, direction, sum) / 2);
+  return connection_ratio(*target_, module, other, direction, sum);
+}
+
+double ChangedForces::load_ratio_turned() const {
+  double largest = 0;
+  for (const Spring& beam : beams_) {
+    largest = std::max(largest, ratio_of(beam, -1) / 2);
+  }
+  return largest;
 }
 
 void ChangedForces::weigh_all() {
@@ -139,7 +150,7 @@ void ChangedForces::open_gap(std::size_t module, int direction, const Vec& u_mod
 }
 
 void ChangedForces::weigh_facet(std::size_t index, const Vec& moved) {
-  Spring& facet = facets_[index];
+  Spring& facet = facet_of(index);
   const double energy = energy_of(base::sum_of<double>(facet.change, -1, moved));
   energy_ += energy - facet.energy;
   facet.energy = energy;

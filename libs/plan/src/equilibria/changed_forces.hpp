@@ -44,6 +44,10 @@ class ChangedForces {
   /// time since the last clear() or weigh_all().
   double load_ratio() const { return load_ratio_; }
 
+  /// The largest load ratio of half of what s and h w have changed by together, turned round, in
+  /// any beam now.
+  double load_ratio_turned() const;
+
   /// A module hands on one more load, about the origin, to its neighbour in a direction.
   void hand_on(std::size_t module, int direction, const Vec& load);
 
@@ -54,7 +58,7 @@ class ChangedForces {
   void bear(std::size_t module, int direction, const Vec& u_module, const Vec& u_other);
 
   /// A facet carries one more force; not weighed yet.
-  void bear(std::size_t facet, const Vec& force) { base::add_to(facets_[facet].change, force); }
+  void bear(std::size_t facet, const Vec& force) { base::add_to(facet_of(facet).change, force); }
 
   /// What h w of a beam is now, if it was nothing.
   void open_gap(std::size_t module, int direction, const Vec& u_module, const Vec& u_other);
@@ -80,6 +84,13 @@ class ChangedForces {
   /// Beams are known by the end from which they have an even direction.
   Spring& beam_from(std::size_t module, int direction);
   void weigh(Spring& beam);
+  double ratio_of(const Spring& beam, double factor) const;
+
+  Spring& facet_of(std::size_t facet) {
+    changed_facets_.push_back(facet);
+    return facets_[facet];
+  }
+
   Vec along(std::size_t module, int direction, const Vec& load) const;
   Vec force_between(int direction, const Vec& u_module, const Vec& u_other) const;
 
@@ -91,6 +102,7 @@ class ChangedForces {
   std::vector<std::int32_t> place_of_beam_;  ///< In beams_, by index; or kNone.
   std::vector<Spring> beams_;                ///< Those that have changed.
   std::vector<Spring> facets_;
+  std::vector<std::size_t> changed_facets_;  ///< Some several times.
   double energy_ = 0;
   double load_ratio_ = 0;
 };

@@ -21,10 +21,6 @@ using solver::kLaneCount;
 using solver::LaneBlock;
 using verdict::Verdict;
 
-/// Where more blocks than this fill in per module, a solution per candidate takes longer than
-/// multigrid's check of it.
-constexpr std::size_t kJudgedFillMax = 100;
-
 /// What displacements for loads on all facets may take.
 constexpr std::size_t kFacetBytesMax = std::size_t{1} << 29U;
 
@@ -75,7 +71,8 @@ std::vector<std::size_t> hosts_of(const std::vector<Site>& sites) {
 
 std::unique_ptr<CandidateJudge> CandidateJudge::make(const model::RobotSpec& spec,
                                                      const RobotSymmetry& symmetry,
-                                                     const CandidateOptions& options) {
+                                                     const CandidateOptions& options,
+                                                     std::size_t fill_max) {
   auto robot = model::Robot::create(spec, options.equilibrium.thread_count);
   // What bending does takes a solution of each candidate by itself.
   if (!robot || robot.value().is_modulus_stated()) {
@@ -83,35 +80,30 @@ std::unique_ptr<CandidateJudge> CandidateJudge::make(const model::RobotSpec& spe
   }
   std::unique_ptr<CandidateJudge> judge(
       new CandidateJudge(spec, options, std::move(robot).value()));
-  return judge->prepare(symmetry) ? std::move(judge) : nullptr;
+  return judge->prepare(symmetry, fill_max) ? std::move(judge) : nullptr;
 }
 
 CandidateJudge::CandidateJudge(const model::RobotSpec& spec, const CandidateOptions& options,
                                model::Robot robot)
-    : spec_(spec),
-      options_(options),
-      robot_(std::move(robot)),
-      finder_(robot_, spec),
-      rigid_(robot_, robot_.kinds().front().mass_kg),
-      is_held_(robot_.fixed_count() > 0 || robot_.has_bonded_facets()) {}
+    : spec_(spec), options_(options), robot_(std::move(robot)), look_(robot_, spec, options) {}
 
 /// Finds what all candidates share. False if nothing can be judged without checks.
-bool CandidateJudge::prepare(const RobotSymmetry& symmetry) {
-  if (!is_held_ && !finder_.has_polygon() && !options_.equilibrium.is_bonded) {
+bool CandidateJudge::prepare(const RobotSymmetry& symmetry, std::size_t fill_max) {
+  if (!look_.can_judge()) {
     return false;
   }
   for (const base::Cell& cell : free_cells(spec_)) {
     if (symmetry.representative(cell) != cell) {
       continue;
     }
-    Site site = finder_.find(cell);
+    Site site = look_.finder().find(cell);
     if (site.kind == Site::Kind::kOpen) {
       sites_.push_back(std::move(site));
     }
   }
   solver::EquilibriumOptions direct = options_.equilibrium;
   direct.method = solver::Method::kDirect;
-  direct.fill_max = kJudgedFillMax;
+  direct.fill_max = fill_max;
   influence_ = solver::Influence::make(robot_, direct);
   if (!influence_) {
     return false;
@@ -128,7 +120,7 @@ bool CandidateJudge::prepare(const RobotSymmetry& symmetry) {
 }
 
 void CandidateJudge::find_sway() {
-  if (!is_held_ && finder_.has_polygon() && !options_.equilibrium.is_bonded) {
+  if (!look_.is_held() && look_.finder().has_polygon() && !options_.equilibrium.is_bonded) {
     sway_.emplace(robot_, *influence_);
   }
 }
@@ -184,12 +176,6 @@ void CandidateJudge::judge(std::span<const base::Cell> cells,
   judge_fully(std::move(waiting));
 }
 
-bool CandidateJudge::has_host_for(const Site& site) const {
-  return options_.is_planned || std::ranges::any_of(site.links, [&](const Link& link) {
-           return !robot_.modules()[link.host].is_planned;
-         });
-}
-
 const SolvedCore* CandidateJudge::core_with_columns() const {
   std::call_once(columns_made_, [&] {
     auto core = std::make_unique<SolvedCore>(*influence_);
@@ -214,28 +200,18 @@ std::optional<Grown> CandidateJudge::settled(const Site& site) const {
 /// What the rigid body alone decides; what is left goes on to loads.
 std::optional<CandidateJudge::Waiting> CandidateJudge::look_at(
     const base::Cell& cell, std::optional<Candidate>& judged) const {
-  Site site = finder_.find(cell);
-  if (site.kind == Site::Kind::kUnknown) {
+  RigidLook::Answer look = look_.at(cell);
+  if (!look.site) {
+    judged = std::move(look.decided);
     return std::nullopt;
   }
-  if (site.kind == Site::Kind::kImpossible || !has_host_for(site)) {
-    judged = Candidate{.cell = site.cell};
-    return std::nullopt;
-  }
-  const verdict::RigidBody body = rigid_.with(site.cell, site.is_on_floor);
-  if (!body.is_stable && !options_.equilibrium.is_bonded) {
-    judged = Candidate{.cell = site.cell,
-                       .is_robot = true,
-                       .judgement = {.verdict = Verdict::kUnstable, .margin_mm = body.margin_mm}};
-    return std::nullopt;
-  }
-  auto grown = begins_stuck_ ? contact_->stuck(site) : settled(site);
+  auto grown = begins_stuck_ ? contact_->stuck(*look.site) : settled(*look.site);
   if (!grown) {
     return std::nullopt;
   }
-  return Waiting{.site = std::move(site),
+  return Waiting{.site = *std::move(look.site),
                  .grown = *std::move(grown),
-                 .margin_mm = body.margin_mm,
+                 .margin_mm = look.margin_mm,
                  .result = &judged};
 }
 

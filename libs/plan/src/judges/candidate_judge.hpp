@@ -13,7 +13,7 @@
 #include "equilibria/sway.hpp"
 #include "holdfast/plan/candidates.hpp"
 #include "holdfast/solver/influence.hpp"
-#include "holdfast/verdict/rigid_body.hpp"
+#include "judges/rigid_look.hpp"
 #include "judges/robot_symmetry.hpp"
 
 namespace holdfast::plan {
@@ -21,11 +21,17 @@ namespace holdfast::plan {
 /// Judges candidates from the robot without them, as far as that is certain to be a check's answer.
 class CandidateJudge {
  public:
-  /// Makes a judge; none if nothing can be said without checks. Asked only for representatives of
-  /// cells by the robot's symmetry. Keeps references.
+  /// Where more blocks than this fill in per module, a solution per candidate takes longer than
+  /// multigrid's check of it.
+  static constexpr std::size_t kFillMax = 100;
+
+  /// Makes a judge; none if nothing can be said without checks, or if more blocks than `fill_max`
+  /// fill in per module. Asked only for representatives of cells by the robot's symmetry. Keeps
+  /// references.
   static std::unique_ptr<CandidateJudge> make(const model::RobotSpec& spec,
                                               const RobotSymmetry& symmetry,
-                                              const CandidateOptions& options);
+                                              const CandidateOptions& options,
+                                              std::size_t fill_max);
 
   /// Leaves out those that need a check. The bits of a judgement do not depend on the other cells.
   void judge(std::span<const base::Cell> cells, std::span<std::optional<Candidate>> judged) const;
@@ -40,11 +46,10 @@ class CandidateJudge {
   };
 
   CandidateJudge(const model::RobotSpec& spec, const CandidateOptions& options, model::Robot robot);
-  bool prepare(const RobotSymmetry& symmetry);
+  bool prepare(const RobotSymmetry& symmetry, std::size_t fill_max);
   void find_inverse();
   bool is_stuck() const;
   bool pays() const;
-  bool has_host_for(const Site& site) const;
   const SolvedCore* core_with_columns() const;
 
   std::optional<Waiting> look_at(const base::Cell& cell, std::optional<Candidate>& judged) const;
@@ -66,9 +71,7 @@ class CandidateJudge {
   const model::RobotSpec& spec_;
   const CandidateOptions& options_;
   model::Robot robot_;
-  SiteFinder finder_;
-  verdict::GrowingRigidBody rigid_;
-  bool is_held_ = false;
+  RigidLook look_;
   bool begins_stuck_ = true;  ///< All facets of the robot without candidates are stuck.
   std::vector<Site> sites_;   ///< Where a module can be, by ascending cell.
   std::unique_ptr<solver::Influence> influence_;

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "holdfast/host/team.hpp"
+#include "judges/certified_run.hpp"
 #include "judges/stage_judge.hpp"
 
 namespace holdfast::plan {
@@ -96,8 +97,17 @@ class Run {
     solver_.thread_count = is_shared ? 1 : options_.solver.thread_count;
     host::Team team(is_shared ? options_.solver.thread_count : 1);
     caller_ = std::this_thread::get_id();
-    team.share(0, steps_.size(),
-               [&](std::size_t begin, std::size_t end) { judge_range(begin, end); });
+    const auto judge_all_of = [&](std::size_t first, std::size_t last) {
+      team.share(first, last, [&](std::size_t begin, std::size_t end) { judge_range(begin, end); });
+    };
+    std::size_t begin = 0;
+    for (const GrowthRun& run : growth_runs()) {
+      const std::size_t judged_end = begin;
+      if (!is_over(run.begin) && judge_growth(run, [&] { judge_all_of(judged_end, run.begin); })) {
+        begin = run.end;
+      }
+    }
+    judge_all_of(begin, steps_.size());
     if (error_ && !(options_.ends_when_unsafe && unsafe_ < error_step_)) {
       return *error_;
     }
@@ -118,12 +128,58 @@ class Run {
     return judge;
   }
 
-  void judge_range(std::size_t begin, std::size_t end) {
-    std::unique_ptr<StageJudge> judge = take_judge();
-    RobotState robot = kept_[begin / stride_];
-    for (std::size_t i = begin / stride_ * stride_; i < begin; ++i) {
+  /// The robot before a step.
+  RobotState robot_before(std::size_t step) const {
+    RobotState robot = kept_[step / stride_];
+    for (std::size_t i = step / stride_ * stride_; i < step; ++i) {
       apply(steps_[i], find_transition(robot, steps_[i]).value(), robot);
     }
+    return robot;
+  }
+
+  std::vector<GrowthRun> growth_runs() const {
+    return options_.solved_count_max == std::numeric_limits<std::size_t>::max() ||
+                   options_.solver.is_bonded
+               ? std::vector<GrowthRun>{}
+               : find_growth_runs(steps_);
+  }
+
+  /// Judges a run by bounds, after what is before it. False if that cannot be; nothing is done
+  /// then.
+  bool judge_growth(const GrowthRun& run, const std::function<void()>& judge_before) {
+    const auto steps = steps_.subspan(run.begin, run.end - run.begin);
+    const auto certified = CertifiedRun::make(robot_before(run.begin), steps, run.sense,
+                                              options_.solved_count_max, options_.solver);
+    if (!certified) {
+      return false;
+    }
+    judge_before();
+    const bool is_growing = run.sense == Sense::kGrowing;
+    auto judged = certified->judge([&](std::span<const StageJudgement> known) {
+      if (options_.progress) {
+        options_.progress(count_ + known.size() - 1);
+      }
+      return !is_growing || !options_.ends_when_unsafe ||
+             std::ranges::none_of(known, plan::is_unsafe, &StageJudgement::verdict);
+    });
+    if (run.begin > 0) {
+      judged.front() = judged_[run.begin - 1].stages[kStageCount - 1];
+    }
+    for (std::size_t i = 0; i + 1 < judged.size(); ++i) {
+      const StageJudgement& after = judged[i + 1];
+      const StageJudgement& shifted = is_growing ? judged[i] : after;
+      judged_[run.begin + i] = {.stages = {judged[i], shifted, after}};
+      if (is_unsafe(judged_[run.begin + i])) {
+        unsafe_ = std::min(unsafe_.load(), run.begin + i);
+      }
+      ++count_;
+    }
+    return true;
+  }
+
+  void judge_range(std::size_t begin, std::size_t end) {
+    std::unique_ptr<StageJudge> judge = take_judge();
+    RobotState robot = robot_before(begin);
     for (std::size_t i = begin; i < end; ++i) {
       const Transition transition = find_transition(robot, steps_[i]).value();
       if (!is_over(i)) {
@@ -167,6 +223,8 @@ class Run {
 
   SequenceJudgement sum_up() {
     SequenceJudgement all;
+    std::optional<double> bound;
+    bool is_any_bound = false;
     all.steps = std::move(judged_);
     if (options_.ends_when_unsafe && unsafe_ < all.steps.size()) {
       all.steps.resize(unsafe_ + 1);
@@ -181,10 +239,15 @@ class Run {
         if (!all.first_undecided && !all.first_unsafe && stage.verdict == Verdict::kUndecided) {
           all.first_undecided = id;
         }
-        all.load_ratio_max = larger(all.load_ratio_max, stage.load_ratio_max);
+        if (!stage.is_bound) {
+          all.load_ratio_max = larger(all.load_ratio_max, stage.load_ratio_max);
+        }
+        is_any_bound = is_any_bound || stage.is_bound;
+        bound = larger(bound, larger(stage.load_ratio_max, stage.load_ratio_high));
         all.margin_min_mm = smaller(all.margin_min_mm, stage.margin_mm);
       }
     }
+    all.load_ratio_bound = is_any_bound ? bound : std::nullopt;
     return all;
   }
 

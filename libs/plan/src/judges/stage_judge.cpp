@@ -44,21 +44,6 @@ void add(StageJudgement& stage, StageJudgement next) {
   stage.worst = worst;
 }
 
-StageJudgement judgement_of(const model::Robot& robot, const verdict::Assessment& assessment) {
-  StageJudgement judged;
-  judged.verdict = assessment.verdict;
-  judged.load_ratio_max = assessment.load_ratio_max;
-  judged.margin_mm = assessment.simplified.margin_mm;
-  for (const verdict::Reason& reason : assessment.reasons) {
-    judged.reasons.push_back({reason, verdict::cells_of(robot, reason)});
-  }
-  if (assessment.worst) {
-    const auto [a, b] = model::ends(robot, *assessment.worst);
-    judged.worst = {a, b};
-  }
-  return judged;
-}
-
 /// The connection between a group and its carrier, which no equilibrium knows.
 void add_hanging(const Hanging& hanging, StageJudgement& judged) {
   const bool breaks = verdict::breaks(hanging.load_ratio);
@@ -108,6 +93,22 @@ bool is_same(const model::RobotSpec& a, const model::RobotSpec& b) {
 
 bool is_unsafe(Verdict verdict) { return severity(verdict) >= severity(Verdict::kOverload); }
 
+StageJudgement stage_judgement_of(const model::Robot& robot,
+                                  const verdict::Assessment& assessment) {
+  StageJudgement judged;
+  judged.verdict = assessment.verdict;
+  judged.load_ratio_max = assessment.load_ratio_max;
+  judged.margin_mm = assessment.simplified.margin_mm;
+  for (const verdict::Reason& reason : assessment.reasons) {
+    judged.reasons.push_back({reason, verdict::cells_of(robot, reason)});
+  }
+  if (assessment.worst) {
+    const auto [a, b] = model::ends(robot, *assessment.worst);
+    judged.worst = {a, b};
+  }
+  return judged;
+}
+
 std::optional<double> larger(const std::optional<double>& a, const std::optional<double>& b) {
   return a && b ? std::max(*a, *b) : a ? a : b;
 }
@@ -151,9 +152,10 @@ base::Result<StageJudgement> StageJudge::judge_piece(const model::RobotSpec& spe
     return robot.error();
   }
   if (const auto assessment = assess_by_core(robot.value())) {
-    return judgement_of(robot.value(), *assessment);
+    return stage_judgement_of(robot.value(), *assessment);
   }
-  return judgement_of(robot.value(), assess(robot.value(), as_checked(robot.value(), options_)));
+  return stage_judgement_of(robot.value(),
+                            assess(robot.value(), as_checked(robot.value(), options_)));
 }
 
 base::Result<StageJudgement> StageJudge::judge_scene(const Scene& scene) {

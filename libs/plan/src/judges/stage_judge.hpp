@@ -13,6 +13,9 @@ namespace holdfast::plan {
 /// Whether a verdict is overload or unstable.
 bool is_unsafe(verdict::Verdict verdict);
 
+/// What a stage is if it is this robot alone.
+StageJudgement stage_judgement_of(const model::Robot& robot, const verdict::Assessment& assessment);
+
 std::optional<double> larger(const std::optional<double>& a, const std::optional<double>& b);
 std::optional<double> smaller(const std::optional<double>& a, const std::optional<double>& b);
 

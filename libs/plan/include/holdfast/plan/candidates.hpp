@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -38,6 +39,9 @@ struct Candidate {
   /// Whether there is such a robot; not where the cell is taken, touches nothing or lies too low.
   /// The judgement is void then.
   bool is_robot = false;
+  /// Whether nothing is known of it: it was not looked at in time, or is not among the best that
+  /// were asked for. The rest is void then.
+  bool is_open = false;
   Judgement judgement = {};
 };
 
@@ -47,6 +51,17 @@ struct CandidateOptions {
   bool is_planned = true;
   /// Judges by checks alone: what the others are compared with.
   bool is_by_checks = false;
+  /// Robots of more modules than this are judged by bounds from one solution first, and only what
+  /// these leave open in other ways: Judgement::is_bound says of which load ratios that is true.
+  std::size_t solved_count_max = std::numeric_limits<std::size_t>::max();
+  /// Whether candidates that a bound has certified are then judged in other ways as well.
+  bool is_exact = false;
+  /// The number of the best candidates that are asked for, where bounds come first: others may be
+  /// left open, or with a bound. 0: all.
+  std::size_t best_count = 0;
+  /// The search ends after this time, or once somebody interrupts it, with what is known then.
+  double seconds_max = std::numeric_limits<double>::infinity();
+  std::function<bool()> is_interrupted = {};
   /// Called now and then with how many candidates are judged, of how many.
   std::function<void(std::size_t done, std::size_t count)> progress = {};
 };
@@ -58,6 +73,7 @@ struct CandidateReport {
   double seconds = 0;                 ///< In all.
 };
 
+class BoundedCandidates;
 class CandidateJudge;
 class RobotSymmetry;
 
@@ -78,14 +94,18 @@ class CandidateSearch {
   CandidateReport judge(std::span<const base::Cell> cells);
 
  private:
+  class Batch;
+
   const CandidateJudge* judge_for(std::size_t cell_count);
-  std::vector<Candidate> judge_each(std::span<const base::Cell> cells, CandidateReport& report);
+  const BoundedCandidates* bounds();
 
   model::RobotSpec spec_;
   CandidateOptions options_;
   bool is_prepared_ = false;
   std::unique_ptr<const RobotSymmetry> symmetry_;
   std::unique_ptr<CandidateJudge> judge_;  ///< None where only checks decide.
+  bool is_bounded_ = false;                ///< Whether bounds_ has been sought.
+  std::unique_ptr<BoundedCandidates> bounds_;
 };
 
 /// All cells in one batch of a search.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -11,6 +12,10 @@
 
 /// What a planner asks of one robot on the way.
 namespace holdfast::plan {
+
+/// Robots of so many modules at most are solved in all states on a way, which takes a tenth of a
+/// second; most states of larger ones are certified by a bound.
+inline constexpr std::size_t kExactModuleCount = 256;
 
 struct Judgement {
   verdict::Verdict verdict = verdict::Verdict::kUndecided;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -54,6 +55,9 @@ struct SequenceOptions {
   solver::EquilibriumOptions solver =
       {};                         ///< Of each check; its threads are those of the sequence.
   bool ends_when_unsafe = false;  ///< Steps behind the first unsafe one are left out.
+  /// Robots that come to have more modules than this may be certified by a bound in runs of steps
+  /// that only attach, or only detach, instead of being solved (Judgement::is_bound).
+  std::size_t solved_count_max = std::numeric_limits<std::size_t>::max();
   /// Called between steps, with how many are judged; from the thread that called.
   std::function<void(std::size_t judged_count)> progress = {};
 };
@@ -62,7 +66,9 @@ struct SequenceJudgement {
   std::vector<StepJudgement> steps;  ///< In their order; fewer than given if it was to end early.
   std::optional<StageId> first_unsafe;     ///< The first that is overloaded or unstable.
   std::optional<StageId> first_undecided;  ///< Of those before it, or of all.
-  std::optional<double> load_ratio_max;    ///< Over all stages.
+  std::optional<double> load_ratio_max;    ///< Over all stages that were solved.
+  /// What no stage exceeds, errors of certified states included; none if all were solved.
+  std::optional<double> load_ratio_bound = {};
   std::optional<double> margin_min_mm;
 
   /// kSafe, kUndecided, or that of the first unsafe stage.
