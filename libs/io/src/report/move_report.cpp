@@ -161,6 +161,7 @@ std::string move_json(const MoveReport& report, const std::vector<std::string>& 
   const Items found = {member("result", json_text(std::string(plan::name(plan.outcome)))),
                        member("steps", fmt::format("{}", plan.steps.size())),
                        member("steps_min", fmt::format("{}", plan.length_min)),
+                       member("assignment_bound", fmt::format("{}", plan.assignment_bound)),
                        member("states", fmt::format("{}", plan.state_count)),
                        member("stages", fmt::format("{}", stages.all)),
                        member("stages_safe", fmt::format("{}", stages.safe)),
@@ -178,6 +179,10 @@ std::string move_text(const MoveReport& report) {
   std::string text = headline(report);
   if (plan.certificate) {
     text += proof_words(*plan.certificate);
+  }
+  if (plan.outcome != MoveOutcome::kNone) {
+    text += fmt::format("  assignment  at least {}\n",
+                        host::counted(static_cast<std::size_t>(plan.assignment_bound), "move"));
   }
   if (plan.judgement) {
     const StageCount stages = count_stages(plan);

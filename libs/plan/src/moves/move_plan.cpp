@@ -99,6 +99,7 @@ class Search {
   /// finds any, more of both in turns.
   MovePlan run() {
     const ShapeSpace& space = problem_.space;
+    plan_.assignment_bound = space.assignment_bound(space.start());
     if (space.start() == space.target()) {
       keep({}, 0);
     } else {
@@ -118,9 +119,10 @@ class Search {
       count = walk(attempt);
     }
     plan_.undecided_count = judge_.undecided_count();
-    plan_.length_min = plan_.undecided_count == 0
-                           ? std::max(forth_.length_min(), back_.length_min())
-                           : problem_.space.distance(problem_.space.start());
+    plan_.length_min = plan_.assignment_bound;
+    if (plan_.undecided_count == 0) {
+      plan_.length_min = std::max({plan_.length_min, forth_.length_min(), back_.length_min()});
+    }
     if (plan_.outcome == MoveOutcome::kFound) {
       plan_.length_min = std::min(plan_.length_min, length());
     }
@@ -155,7 +157,7 @@ class Search {
     if (outcome == SearchOutcome::kExhausted && judge_.undecided_count() > 0) {
       is_exhausted_ = true;
     } else if (outcome == SearchOutcome::kExhausted) {
-      plan_ = {.outcome = MoveOutcome::kNone};
+      plan_ = {.outcome = MoveOutcome::kNone, .assignment_bound = plan_.assignment_bound};
       plan_.certificate = MoveCertificate{
           .task = task_, .shapes = search.shapes(), .is_backward = end == End::kTarget};
     } else if (outcome == SearchOutcome::kFound) {
@@ -192,8 +194,9 @@ class Search {
   bool is_exhausted_ = false;  ///< Nothing is left to try but undecided moves.
 };
 
-MovePlan unsafe_target(const MoveTask& task, const Judgement& judgement) {
+MovePlan unsafe_target(const MoveTask& task, const ShapeSpace& space, const Judgement& judgement) {
   MovePlan plan;
+  plan.assignment_bound = plan.length_min = space.assignment_bound(space.start());
   if (judgement.verdict == verdict::Verdict::kUndecided) {
     plan.undecided_count = 1;
     return plan;
@@ -284,7 +287,7 @@ base::Result<MovePlan> find_moves(const MoveTask& task, const MoveOptions& optio
     }
     const Judgement target = judge_spec(task.target, options);
     if (!target.is_safe()) {
-      return unsafe_target(task, target);
+      return unsafe_target(task, problem.value().space, target);
     }
   }
   MovePlan plan = Search(task, options, problem.value()).run();

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <set>
@@ -22,9 +23,12 @@ using base::Cell;
 /// More moves than there are in any plan.
 constexpr int kNever = 1'000'000;
 
-/// The most modules alike that are assigned to cells, which takes as long as their cube; of more,
-/// each that is misplaced counts as one move.
-constexpr std::size_t kAssignedMax = 60;
+/// The most modules alike that are assigned to cells for each shape of a search, which takes as
+/// long as the cube of those misplaced; of more, each that is misplaced counts as one move.
+constexpr std::size_t kSearchedMax = 60;
+
+/// The most misplaced modules alike that are assigned once: a second or two.
+constexpr std::size_t kAssignedMax = 2000;
 
 /// What makes modules alike.
 using Alike = std::tuple<std::uint16_t, double, std::array<double, 3>, std::array<double, 3>>;
@@ -107,12 +111,6 @@ std::vector<Cell> translations(const base::Lattice& lattice) {
   }
   found.erase(Cell{});
   return {found.begin(), found.end()};
-}
-
-/// How many of these cells, ascending, are none of the others.
-int misplaced(std::span<const Cell> cells, std::span<const Cell> others) {
-  return static_cast<int>(std::ranges::count_if(
-      cells, [&](const Cell& cell) { return !std::ranges::binary_search(others, cell); }));
 }
 
 int along(const Cell& direction, const Cell& way) {
@@ -227,73 +225,46 @@ int ShapeSpace::moves_between(const Cell& from, const Cell& to) const {
   return most;
 }
 
-int ShapeSpace::distance(const Shape& shape) const {
-  int total = 0;
-  for (std::size_t i = 0; i + 1 < class_begin_.size(); ++i) {
-    const std::size_t begin = class_begin_[i];
-    const std::size_t count = class_begin_[i + 1] - begin;
-    if (count > kAssignedMax) {
-      total += misplaced({shape.data() + begin, count}, {target_.data() + begin, count});
-      continue;
-    }
-    std::vector<int> costs(count * count);
-    for (std::size_t row = 0; row < count; ++row) {
-      for (std::size_t column = 0; column < count; ++column) {
-        costs[row * count + column] = moves_between(shape[begin + row], target_[begin + column]);
-      }
-    }
-    total += assignment_cost(costs, count);
+std::vector<ShapeSpace::Misplaced> ShapeSpace::misplaced(const Shape& shape) const {
+  std::vector<Misplaced> all(class_begin_.size() - 1);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto begin = static_cast<std::ptrdiff_t>(class_begin_[i]);
+    const auto end = static_cast<std::ptrdiff_t>(class_begin_[i + 1]);
+    std::set_difference(shape.begin() + begin, shape.begin() + end, target_.begin() + begin,
+                        target_.begin() + end, std::back_inserter(all[i].modules));
+    std::set_difference(target_.begin() + begin, target_.begin() + end, shape.begin() + begin,
+                        shape.begin() + end, std::back_inserter(all[i].goals));
   }
-  return total;
+  return all;
 }
 
-// Rows are taken up one by one, each by a shortest augmenting path in reduced costs. Legend: u, v
-// are the duals of rows and columns, `row_of` is the matching, index 0 stands for no row or column.
-int assignment_cost(std::span<const int> costs, std::size_t count) {
-  constexpr int kFar = std::numeric_limits<int>::max();
-  std::vector<int> u(count + 1);
-  std::vector<int> v(count + 1);
-  std::vector<std::size_t> row_of(count + 1);
-  std::vector<std::size_t> way(count + 1);
-  for (std::size_t row = 1; row <= count; ++row) {
-    std::vector<int> least(count + 1, kFar);
-    std::vector<bool> is_used(count + 1);
-    std::size_t column = 0;
-    row_of[0] = row;
-    do {
-      is_used[column] = true;
-      const std::size_t here = row_of[column];
-      int delta = kFar;
-      std::size_t next = 0;
-      for (std::size_t j = 1; j <= count; ++j) {
-        if (is_used[j]) {
-          continue;
-        }
-        const int reduced = costs[(here - 1) * count + j - 1] - u[here] - v[j];
-        if (reduced < least[j]) {
-          least[j] = reduced;
-          way[j] = column;
-        }
-        if (least[j] < delta) {
-          delta = least[j];
-          next = j;
-        }
-      }
-      for (std::size_t j = 0; j <= count; ++j) {
-        if (is_used[j]) {
-          u[row_of[j]] += delta;
-          v[j] -= delta;
-        } else {
-          least[j] -= delta;
-        }
-      }
-      column = next;
-    } while (row_of[column] != 0);
-    for (; column != 0; column = way[column]) {
-      row_of[column] = row_of[way[column]];
+Assignment ShapeSpace::assign(const Misplaced& misplaced) const {
+  std::vector<int> costs;
+  costs.reserve(misplaced.modules.size() * misplaced.goals.size());
+  for (const Cell& from : misplaced.modules) {
+    for (const Cell& to : misplaced.goals) {
+      costs.push_back(moves_between(from, to));
     }
   }
-  return -v[0];
+  return plan::assign(costs, misplaced.modules.size());
+}
+
+int ShapeSpace::distance(const Shape& shape) const { return distance(shape, false); }
+
+int ShapeSpace::assignment_bound(const Shape& shape) const { return distance(shape, true); }
+
+// Modules in cells of the target need not be assigned: `moves_between` fulfils the triangle
+// inequality, so some cheapest assignment leaves them where they are.
+int ShapeSpace::distance(const Shape& shape, bool is_exact) const {
+  std::int64_t total = 0;
+  const std::vector<Misplaced> all = misplaced(shape);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::size_t count = all[i].modules.size();
+    const bool is_assigned =
+        is_exact ? count <= kAssignedMax : class_begin_[i + 1] - class_begin_[i] <= kSearchedMax;
+    total += is_assigned ? assign(all[i]).cost : static_cast<std::int64_t>(count);
+  }
+  return static_cast<int>(std::min<std::int64_t>(total, std::numeric_limits<int>::max()));
 }
 
 }  // namespace holdfast::plan

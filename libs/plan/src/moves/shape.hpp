@@ -10,6 +10,7 @@
 
 #include "holdfast/base/result.hpp"
 #include "holdfast/plan/module_moves.hpp"
+#include "moves/assignment.hpp"
 
 /// Shapes of a robot: where its modules are, no matter which of those that are alike.
 namespace holdfast::plan {
@@ -47,6 +48,21 @@ class ShapeSpace {
   /// the number of those that are misplaced. No move changes it by more than 1.
   int distance(const Shape& shape) const;
 
+  /// A lower bound as by distance(), by an assignment of up to 2,000 misplaced modules of each
+  /// class.
+  int assignment_bound(const Shape& shape) const;
+
+  /// Modules of one class that are in no cell of the target, and the cells that they lack.
+  struct Misplaced {
+    std::vector<base::Cell> modules;
+    std::vector<base::Cell> goals;
+  };
+
+  std::vector<Misplaced> misplaced(const Shape& shape) const;
+
+  /// The cheapest assignment of modules to goals, each as if it were alone.
+  Assignment assign(const Misplaced& misplaced) const;
+
   /// The cells of the class that the module in a cell of the shape belongs to: in the shape, or in
   /// the target.
   std::span<const base::Cell> class_of(const Shape& shape, const base::Cell& cell) const;
@@ -55,6 +71,7 @@ class ShapeSpace {
  private:
   explicit ShapeSpace(const RobotState& start) : robot_(start) {}
 
+  int distance(const Shape& shape, bool is_exact) const;
   std::size_t class_index(const Shape& shape, const base::Cell& cell) const;
   int moves_between(const base::Cell& from, const base::Cell& to) const;
 
@@ -65,9 +82,5 @@ class ShapeSpace {
   /// The most that one move gains along each of some directions, axial.
   std::vector<std::pair<base::Cell, int>> gains_;
 };
-
-/// The least sum of costs of an assignment of rows to columns, of a square matrix by rows
-/// [Kuhn 1955], by shortest augmenting paths [Jonker 1987], in O(n^3).
-int assignment_cost(std::span<const int> costs, std::size_t count);
 
 }  // namespace holdfast::plan
