@@ -8,7 +8,8 @@
 
 slab: a solid block becomes a plate of one layer around the same corner. line: a row on the floor
 becomes a standing wall at its end. blob: two random blobs, grown cell by cell from the same one,
-`--seed` says which. --strength: what a connection holds, N (default 100,000: nothing breaks).
+`--seed` says which. --strength: what a connection holds, N, such as 1e5, by which nothing breaks;
+default: the strengths of Blinky Blocks.
 Plans are replayed by what shapes alone say (`replay`). Prints a table in Markdown.
 """
 import argparse
@@ -111,9 +112,10 @@ def replay(start, target, steps):
 
 
 def write(path, cells, strength):
+    material = {'strength_vertical_n': strength, 'strength_lateral_n': strength}
     path.write_text(json.dumps({
         'format': 'holdfast-structure', 'version': 1, 'name': path.stem,
-        'material': {'strength_vertical_n': strength, 'strength_lateral_n': strength},
+        **({'material': material} if strength else {}),
         'modules': [list(cell) for cell in cells]}))
 
 
@@ -146,7 +148,7 @@ def main():
     parser.add_argument('--modules', type=int, nargs='+', default=[30, 100, 300, 1000])
     parser.add_argument('--pairs', nargs='+', default=['slab', 'line', 'blob'])
     parser.add_argument('--seconds', type=float, default=60)
-    parser.add_argument('--strength', type=float, default=1e5)
+    parser.add_argument('--strength', type=float)
     parser.add_argument('--seed', type=int, default=1)
     parser.add_argument('--keep', help='Keep shapes, plans and reports there')
     own, options = sys.argv[1:], []

@@ -3,7 +3,7 @@
 //
 // Cheapest assignments beside all permutations; and large ones beside a second bound, the prices of
 // an auction [Bertsekas 1988], which a matching of the same cost meets.
-#include "moves/assignment.hpp"
+#include "slides/assignment.hpp"
 
 #include <gtest/gtest.h>
 

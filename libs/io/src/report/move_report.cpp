@@ -189,6 +189,10 @@ std::string move_text(const MoveReport& report) {
     text += stages.safe == stages.all ? fmt::format("  stages      {}, all safe\n", stages.all)
                                       : fmt::format("  stages      {}, {} of them not safe\n",
                                                     stages.all, stages.all - stages.safe);
+    if (const std::size_t left = plan.steps.size() - plan.judgement->steps.size(); left > 0) {
+      text += fmt::format("  not judged  the last {}: the time was over\n",
+                          host::counted(left, "step"));
+    }
   }
   if (load_ratio_of(plan)) {
     text +=

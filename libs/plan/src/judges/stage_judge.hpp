@@ -16,6 +16,9 @@ bool is_unsafe(verdict::Verdict verdict);
 std::optional<double> larger(const std::optional<double>& a, const std::optional<double>& b);
 std::optional<double> smaller(const std::optional<double>& a, const std::optional<double>& b);
 
+/// What the judgements of all steps come to.
+SequenceJudgement sum_up(std::vector<StepJudgement> steps);
+
 /// Judges the stages of one step after another. What steps have in common, the modules that stay
 /// where they are, is kept from one to the next; no answer depends on it.
 class StageJudge {

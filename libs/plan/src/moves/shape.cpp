@@ -23,10 +23,6 @@ using base::Cell;
 /// More moves than there are in any plan.
 constexpr int kNever = 1'000'000;
 
-/// The most modules alike that are assigned to cells for each shape of a search, which takes as
-/// long as the cube of those misplaced; of more, each that is misplaced counts as one move.
-constexpr std::size_t kSearchedMax = 60;
-
 /// The most misplaced modules alike that are assigned once: a second or two.
 constexpr std::size_t kAssignedMax = 2000;
 
@@ -145,6 +141,36 @@ std::size_t ShapeHash::operator()(const Shape& shape) const {
   return static_cast<std::size_t>(key);
 }
 
+std::vector<Cell> only_in(std::span<const Cell> cells, std::span<const Cell> others) {
+  std::vector<Cell> left;
+  std::ranges::set_difference(cells, others, std::back_inserter(left));
+  return left;
+}
+
+LeastMoves::LeastMoves(const base::Lattice& lattice)
+    : lattice_(lattice), gains_(gains_of(lattice)) {}
+
+int LeastMoves::between(const Cell& from, const Cell& to) const {
+  const Cell way = difference(base::axial_of(lattice_, to), base::axial_of(lattice_, from));
+  int most = 0;
+  for (const auto& [direction, gain] : gains_) {
+    const int length = std::abs(along(direction, way));
+    most = std::max(most, gain != 0 ? (length + gain - 1) / gain : length != 0 ? kNever : 0);
+  }
+  return most;
+}
+
+Assignment LeastMoves::assign(std::span<const Cell> modules, std::span<const Cell> goals) const {
+  std::vector<int> costs;
+  costs.reserve(modules.size() * goals.size());
+  for (const Cell& from : modules) {
+    for (const Cell& to : goals) {
+      costs.push_back(between(from, to));
+    }
+  }
+  return plan::assign(costs, modules.size());
+}
+
 base::Result<ShapeSpace> ShapeSpace::create(const RobotState& start, const RobotState& target) {
   const Classes from = classes_of(start);
   const Classes to = classes_of(target);
@@ -159,7 +185,6 @@ base::Result<ShapeSpace> ShapeSpace::create(const RobotState& start, const Robot
     space.target_.insert(space.target_.end(), ends.begin(), ends.end());
     space.class_begin_.push_back(space.start_.size());
   }
-  space.gains_ = gains_of(start.lattice());
   return space;
 }
 
@@ -214,55 +239,24 @@ Shape ShapeSpace::after(const Shape& shape, const Cell& from, const Cell& to) co
   return moved;
 }
 
-int ShapeSpace::moves_between(const Cell& from, const Cell& to) const {
-  const base::Lattice& lattice = robot_.lattice();
-  const Cell way = difference(base::axial_of(lattice, to), base::axial_of(lattice, from));
-  int most = 0;
-  for (const auto& [direction, gain] : gains_) {
-    const int length = std::abs(along(direction, way));
-    most = std::max(most, gain != 0 ? (length + gain - 1) / gain : length != 0 ? kNever : 0);
-  }
-  return most;
-}
-
-std::vector<ShapeSpace::Misplaced> ShapeSpace::misplaced(const Shape& shape) const {
-  std::vector<Misplaced> all(class_begin_.size() - 1);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const auto begin = static_cast<std::ptrdiff_t>(class_begin_[i]);
-    const auto end = static_cast<std::ptrdiff_t>(class_begin_[i + 1]);
-    std::set_difference(shape.begin() + begin, shape.begin() + end, target_.begin() + begin,
-                        target_.begin() + end, std::back_inserter(all[i].modules));
-    std::set_difference(target_.begin() + begin, target_.begin() + end, shape.begin() + begin,
-                        shape.begin() + end, std::back_inserter(all[i].goals));
-  }
-  return all;
-}
-
-Assignment ShapeSpace::assign(const Misplaced& misplaced) const {
-  std::vector<int> costs;
-  costs.reserve(misplaced.modules.size() * misplaced.goals.size());
-  for (const Cell& from : misplaced.modules) {
-    for (const Cell& to : misplaced.goals) {
-      costs.push_back(moves_between(from, to));
-    }
-  }
-  return plan::assign(costs, misplaced.modules.size());
-}
-
 int ShapeSpace::distance(const Shape& shape) const { return distance(shape, false); }
 
 int ShapeSpace::assignment_bound(const Shape& shape) const { return distance(shape, true); }
 
-// Modules in cells of the target need not be assigned: `moves_between` fulfils the triangle
-// inequality, so some cheapest assignment leaves them where they are.
+// Modules in cells of the target need not be assigned: LeastMoves fulfils the triangle inequality,
+// so some cheapest assignment leaves them where they are.
 int ShapeSpace::distance(const Shape& shape, bool is_exact) const {
   std::int64_t total = 0;
-  const std::vector<Misplaced> all = misplaced(shape);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const std::size_t count = all[i].modules.size();
+  for (std::size_t i = 0; i + 1 < class_begin_.size(); ++i) {
+    const std::size_t begin = class_begin_[i];
+    const std::size_t class_size = class_begin_[i + 1] - begin;
+    const std::span<const Cell> cells{shape.data() + begin, class_size};
+    const std::span<const Cell> ends{target_.data() + begin, class_size};
+    const std::vector<Cell> misplaced = only_in(cells, ends);
     const bool is_assigned =
-        is_exact ? count <= kAssignedMax : class_begin_[i + 1] - class_begin_[i] <= kSearchedMax;
-    total += is_assigned ? assign(all[i]).cost : static_cast<std::int64_t>(count);
+        is_exact ? misplaced.size() <= kAssignedMax : class_size <= kSearchedMax;
+    total += is_assigned ? least_.assign(misplaced, only_in(ends, cells)).cost
+                         : static_cast<std::int64_t>(misplaced.size());
   }
   return static_cast<int>(std::min<std::int64_t>(total, std::numeric_limits<int>::max()));
 }

@@ -82,7 +82,8 @@ struct MovePlan {
   /// Moves, or the target, that were not taken because they are undecided: where there are any,
   /// `none` and the shortest plan are not proved.
   std::size_t undecided_count = 0;
-  /// The judgement of the steps, made anew as of one sequence; none if there is no step.
+  /// The judgement of the steps as of one sequence; none if there is no step. If mechanics is
+  /// ignored, of the first of them, as far as time reached.
   std::optional<SequenceJudgement> judgement = {};
   std::optional<MoveCertificate> certificate = {};  ///< Of kNone.
 };

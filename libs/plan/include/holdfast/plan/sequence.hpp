@@ -56,6 +56,8 @@ struct SequenceOptions {
   bool ends_when_unsafe = false;  ///< Steps behind the first unsafe one are left out.
   /// Called between steps, with how many are judged; from the thread that called.
   std::function<void(std::size_t judged_count)> progress = {};
+  /// Asked before each step, by any thread; true leaves out that step and those behind it.
+  std::function<bool()> is_interrupted = {};
 };
 
 struct SequenceJudgement {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "moves/assignment.hpp"
+#include "slides/assignment.hpp"
 
 #include <algorithm>
 #include <limits>
