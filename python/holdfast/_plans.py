@@ -429,6 +429,11 @@ class Moves(_Texts, _Sought):
         return self._held.length_min
 
     @property
+    def assignment_bound(self) -> int:
+        """Moves of the cheapest assignment of modules to cells of the target; a lower bound."""
+        return self._held.assignment_bound
+
+    @property
     def state_count(self) -> int:
         """Moves judged in all."""
         return self._held.state_count

@@ -412,6 +412,8 @@ void add_move(py::module_& module) {
       .def_property_readonly("steps", &move_steps)
       .def_property_readonly("is_shortest", [](const MoveReport& r) { return r.plan.is_shortest; })
       .def_property_readonly("length_min", [](const MoveReport& r) { return r.plan.length_min; })
+      .def_property_readonly("assignment_bound",
+                             [](const MoveReport& r) { return r.plan.assignment_bound; })
       .def_property_readonly("state_count", [](const MoveReport& r) { return r.plan.state_count; })
       .def_property_readonly("seconds", [](const MoveReport& r) { return r.seconds; })
       .def("as_steps", &move_as_steps)

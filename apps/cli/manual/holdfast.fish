@@ -135,7 +135,7 @@ complete -c holdfast -n __fish_use_subcommand -a move -d 'Find moves of single m
 complete -c holdfast -n '__fish_seen_subcommand_from move' -s h -l help -d 'Print this help message and exit'
 complete -c holdfast -n '__fish_seen_subcommand_from move' -l pivot -d 'Cubes turn about edges, and need the cells that they sweep on their way'
 complete -c holdfast -n '__fish_seen_subcommand_from move' -l within -x -d 'No module leaves the box of cells with these corners'
-complete -c holdfast -n '__fish_seen_subcommand_from move' -l geometry-only -d 'Find moves that need not be safe, and judge their stages afterwards'
+complete -c holdfast -n '__fish_seen_subcommand_from move' -l geometry-only -d 'Find moves that need not be safe, and judge their stages afterwards, as far as time reaches'
 complete -c holdfast -n '__fish_seen_subcommand_from move' -l seed -x -d 'Random seed; one seed always gives the same result'
 complete -c holdfast -n '__fish_seen_subcommand_from move' -l seconds -x -d 'Give up after this time [default: 300]'
 complete -c holdfast -n '__fish_seen_subcommand_from move' -l threads -x -d 'Threads; 0: as many as the machine has cores. The answer does not depend on it'

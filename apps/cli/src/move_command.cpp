@@ -191,7 +191,8 @@ void add_ways(CLI::App& command, MoveArguments& options) {
         return box_of(text) ? "" : "expected two cells, such as 0,0,0:9,9,9";
       });
   command.add_flag("--geometry-only", options.ignores_mechanics,
-                   "Find moves that need not be safe, and judge their stages afterwards");
+                   "Find moves that need not be safe, and judge their stages afterwards, as far "
+                   "as time reaches");
 }
 
 void add_limits(CLI::App& command, MoveArguments& options) {

@@ -161,6 +161,7 @@ std::string move_json(const MoveReport& report, const std::vector<std::string>& 
   const Items found = {member("result", json_text(std::string(plan::name(plan.outcome)))),
                        member("steps", fmt::format("{}", plan.steps.size())),
                        member("steps_min", fmt::format("{}", plan.length_min)),
+                       member("assignment_bound", fmt::format("{}", plan.assignment_bound)),
                        member("states", fmt::format("{}", plan.state_count)),
                        member("stages", fmt::format("{}", stages.all)),
                        member("stages_safe", fmt::format("{}", stages.safe)),
@@ -179,11 +180,19 @@ std::string move_text(const MoveReport& report) {
   if (plan.certificate) {
     text += proof_words(*plan.certificate);
   }
+  if (plan.outcome != MoveOutcome::kNone) {
+    text += fmt::format("  assignment  at least {}\n",
+                        host::counted(static_cast<std::size_t>(plan.assignment_bound), "move"));
+  }
   if (plan.judgement) {
     const StageCount stages = count_stages(plan);
     text += stages.safe == stages.all ? fmt::format("  stages      {}, all safe\n", stages.all)
                                       : fmt::format("  stages      {}, {} of them not safe\n",
                                                     stages.all, stages.all - stages.safe);
+    if (const std::size_t left = plan.steps.size() - plan.judgement->steps.size(); left > 0) {
+      text += fmt::format("  not judged  the last {}: the time was over\n",
+                          host::counted(left, "step"));
+    }
   }
   if (load_ratio_of(plan)) {
     text +=

@@ -182,6 +182,7 @@ class Run {
     RobotState robot = robot_before(begin);
     for (std::size_t i = begin; i < end; ++i) {
       const Transition transition = find_transition(robot, steps_[i]).value();
+      give_up_at(i);
       if (!is_over(i)) {
         // Chunks begin afresh, so that nothing depends on who does which.
         const bool is_first = (i - begin) % kChunk == 0;
@@ -216,39 +217,25 @@ class Run {
     }
   }
 
-  /// Whether a step behind `i` has decided already.
+  /// Leaves out step i and those behind it if the caller wants no more.
+  void give_up_at(std::size_t i) {
+    if (options_.is_interrupted && i < given_up_ && options_.is_interrupted()) {
+      const std::lock_guard lock(mutex_);
+      given_up_ = std::min(given_up_.load(), i);
+    }
+  }
+
+  /// Whether a step behind `i` has decided already, or it is left out.
   bool is_over(std::size_t i) const {
-    return error_step_ < i || (options_.ends_when_unsafe && unsafe_ < i);
+    return error_step_ < i || given_up_ <= i || (options_.ends_when_unsafe && unsafe_ < i);
   }
 
   SequenceJudgement sum_up() {
-    SequenceJudgement all;
-    std::optional<double> bound;
-    bool is_any_bound = false;
-    all.steps = std::move(judged_);
-    if (options_.ends_when_unsafe && unsafe_ < all.steps.size()) {
-      all.steps.resize(unsafe_ + 1);
+    if (options_.ends_when_unsafe && unsafe_ < judged_.size()) {
+      judged_.resize(unsafe_ + 1);
     }
-    for (std::size_t i = 0; i < all.steps.size(); ++i) {
-      for (int k = 0; k < kStageCount; ++k) {
-        const StageJudgement& stage = all.steps[i].stages[static_cast<std::size_t>(k)];
-        const StageId id = {.step = i, .stage = static_cast<Stage>(k)};
-        if (!all.first_unsafe && plan::is_unsafe(stage.verdict)) {
-          all.first_unsafe = id;
-        }
-        if (!all.first_undecided && !all.first_unsafe && stage.verdict == Verdict::kUndecided) {
-          all.first_undecided = id;
-        }
-        if (!stage.is_bound) {
-          all.load_ratio_max = larger(all.load_ratio_max, stage.load_ratio_max);
-        }
-        is_any_bound = is_any_bound || stage.is_bound;
-        bound = larger(bound, larger(stage.load_ratio_max, stage.load_ratio_high));
-        all.margin_min_mm = smaller(all.margin_min_mm, stage.margin_mm);
-      }
-    }
-    all.load_ratio_bound = is_any_bound ? bound : std::nullopt;
-    return all;
+    judged_.resize(std::min<std::size_t>(judged_.size(), given_up_));
+    return plan::sum_up(std::move(judged_));
   }
 
   std::span<const model::Step> steps_;
@@ -261,6 +248,7 @@ class Run {
   std::vector<std::unique_ptr<StageJudge>> judges_;  ///< Those that are not in use.
   std::thread::id caller_;
   std::atomic<std::size_t> count_ = 0;
+  std::atomic<std::size_t> given_up_ = std::numeric_limits<std::size_t>::max();
   std::atomic<std::size_t> unsafe_ = std::numeric_limits<std::size_t>::max();
   std::atomic<std::size_t> error_step_ = std::numeric_limits<std::size_t>::max();
   std::optional<base::Error> error_;
@@ -268,6 +256,33 @@ class Run {
 };
 
 }  // namespace
+
+SequenceJudgement sum_up(std::vector<StepJudgement> steps) {
+  SequenceJudgement all;
+  std::optional<double> bound;
+  bool is_any_bound = false;
+  all.steps = std::move(steps);
+  for (std::size_t i = 0; i < all.steps.size(); ++i) {
+    for (int k = 0; k < kStageCount; ++k) {
+      const StageJudgement& stage = all.steps[i].stages[static_cast<std::size_t>(k)];
+      const StageId id = {.step = i, .stage = static_cast<Stage>(k)};
+      if (!all.first_unsafe && plan::is_unsafe(stage.verdict)) {
+        all.first_unsafe = id;
+      }
+      if (!all.first_undecided && !all.first_unsafe && stage.verdict == Verdict::kUndecided) {
+        all.first_undecided = id;
+      }
+      if (!stage.is_bound) {
+        all.load_ratio_max = larger(all.load_ratio_max, stage.load_ratio_max);
+      }
+      is_any_bound = is_any_bound || stage.is_bound;
+      bound = larger(bound, larger(stage.load_ratio_max, stage.load_ratio_high));
+      all.margin_min_mm = smaller(all.margin_min_mm, stage.margin_mm);
+    }
+  }
+  all.load_ratio_bound = is_any_bound ? bound : std::nullopt;
+  return all;
+}
 
 Verdict SequenceJudgement::verdict() const {
   if (first_unsafe) {

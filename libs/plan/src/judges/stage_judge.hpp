@@ -19,6 +19,9 @@ StageJudgement stage_judgement_of(const model::Robot& robot, const verdict::Asse
 std::optional<double> larger(const std::optional<double>& a, const std::optional<double>& b);
 std::optional<double> smaller(const std::optional<double>& a, const std::optional<double>& b);
 
+/// What the judgements of all steps come to.
+SequenceJudgement sum_up(std::vector<StepJudgement> steps);
+
 /// Judges the stages of one step after another. What steps have in common, the modules that stay
 /// where they are, is kept from one to the next; no answer depends on it.
 class StageJudge {

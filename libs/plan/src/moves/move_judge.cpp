@@ -5,7 +5,7 @@
 namespace holdfast::plan {
 
 MoveJudge::MoveJudge(const MoveTask& task, const MoveOptions& options)
-    : task_(task), options_(options) {}
+    : task_(task), options_(options), stage_judge_(options.solver) {}
 
 bool MoveJudge::is_safe(const RobotState& before, const model::Move& move, const Shape& after) {
   if (unsafe_.contains(after)) {
@@ -38,6 +38,29 @@ verdict::Verdict MoveJudge::judge(const RobotState& before, const model::Step& s
   }
   const auto judged = judge_stage(before, step, transition, stage, options_.solver);
   return judged ? judged.value().verdict : verdict::Verdict::kUnstable;
+}
+
+std::optional<StepJudgement> MoveJudge::judge_move(const RobotState& before,
+                                                   const model::Move& move,
+                                                   const StepJudgement* known, bool shares_core) {
+  ++count_;
+  const model::Step step = step_of(move);
+  const auto transition = find_transition(before, step);
+  if (!transition) {
+    return std::nullopt;
+  }
+  auto judged = stage_judge_.judge(before, step, transition.value(),
+                                   known != nullptr ? &known->stages.back() : nullptr, shares_core);
+  if (!judged) {
+    return std::nullopt;
+  }
+  for (const StageJudgement& stage : judged.value().stages) {
+    if (!stage.is_safe()) {
+      undecided_count_ += stage.verdict == verdict::Verdict::kUndecided ? 1 : 0;
+      return std::nullopt;
+    }
+  }
+  return std::move(judged).value();
 }
 
 bool MoveJudge::is_over() const {

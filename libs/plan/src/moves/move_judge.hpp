@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <unordered_set>
 
 #include "holdfast/plan/move_plan.hpp"
+#include "judges/stage_judge.hpp"
 #include "moves/shape.hpp"
 #include "patience.hpp"
 
@@ -18,6 +20,16 @@ class MoveJudge {
 
   /// Whether a move from a robot of one shape to another shape is safe at every stage.
   bool is_safe(const RobotState& before, const model::Move& move, const Shape& after);
+
+  /// The judgement of a move if it is safe at every stage. `known`: that of the move before, by
+  /// which the same module came; `shares_core`: others of the same module follow or went before.
+  std::optional<StepJudgement> judge_move(const RobotState& before, const model::Move& move,
+                                          const StepJudgement* known, bool shares_core);
+
+  bool ignores_mechanics() const { return task_.ignores_mechanics; }
+
+  /// Counts moves that were examined elsewhere.
+  void count_unjudged(std::size_t count) { count_ += count; }
 
   /// Whether time, states or patience have run out.
   bool is_over() const;
@@ -39,6 +51,7 @@ class MoveJudge {
   const MoveTask& task_;
   const MoveOptions& options_;
   Patience patience_{options_.seconds_max, options_.is_interrupted};
+  StageJudge stage_judge_;
   std::size_t count_ = 0;
   std::size_t undecided_count_ = 0;
   std::unordered_set<Shape, ShapeHash> unsafe_;  ///< Even when all is connected.

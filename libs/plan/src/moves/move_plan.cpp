@@ -12,6 +12,7 @@
 #include "barring_floor.hpp"
 #include "moves/move_judge.hpp"
 #include "moves/shape_search.hpp"
+#include "moves/slide_moves.hpp"
 #include "moves/surface_planner.hpp"
 
 namespace holdfast::plan {
@@ -99,6 +100,7 @@ class Search {
   /// finds any, more of both in turns.
   MovePlan run() {
     const ShapeSpace& space = problem_.space;
+    plan_.assignment_bound = space.assignment_bound(space.start());
     if (space.start() == space.target()) {
       keep({}, 0);
     } else {
@@ -111,19 +113,53 @@ class Search {
 
  private:
   void seek() {
-    walk(0);
-    std::size_t count = options_.exact_count_max / problem_.space.start().size();
-    for (std::uint64_t attempt = 1; !search(count) && !is_exhausted_ && !judge_.is_over();
-         ++attempt) {
+    const std::size_t module_count = problem_.space.start().size();
+    if (module_count > kSearchedMax) {
+      slide();
+    }
+    if (plan_.outcome != MoveOutcome::kFound) {
+      walk(0);
+    }
+    std::size_t count = options_.exact_count_max / module_count;
+    for (std::uint64_t attempt = 1;
+         !is_left_so() && !search(count) && !is_exhausted_ && !judge_.is_over(); ++attempt) {
       count = walk(attempt);
+      if (attempt == 1 && module_count <= kSearchedMax && plan_.outcome != MoveOutcome::kFound) {
+        slide();
+      }
     }
     plan_.undecided_count = judge_.undecided_count();
-    plan_.length_min = plan_.undecided_count == 0
-                           ? std::max(forth_.length_min(), back_.length_min())
-                           : problem_.space.distance(problem_.space.start());
+    plan_.length_min = plan_.assignment_bound;
+    if (plan_.undecided_count == 0) {
+      plan_.length_min = std::max({plan_.length_min, forth_.length_min(), back_.length_min()});
+    }
     if (plan_.outcome == MoveOutcome::kFound) {
       plan_.length_min = std::min(plan_.length_min, length());
     }
+  }
+
+  /// Many cubes at a time, which ends soon.
+  void slide() {
+    auto found = find_slides(problem_.space, problem_.rule, options_.seed, judge_);
+    if (!found) {
+      return;
+    }
+    Shape shape = problem_.space.start();
+    for (const model::Move& move : found->moves) {
+      shape = problem_.space.after(shape, move.from, move.to);
+    }
+    keep(found->moves, found->is_found ? 0 : problem_.space.distance(shape));
+    if (found->is_found && !task_.ignores_mechanics) {
+      plan_.judgement = sum_up(std::move(found->judged));
+    }
+  }
+
+  /// Whether a plan of many modules is so much longer than the bound of the search that this would
+  /// see too many shapes.
+  bool is_left_so() const {
+    constexpr int kHopeful = 6;
+    return plan_.outcome == MoveOutcome::kFound && problem_.space.start().size() > kSearchedMax &&
+           length() - problem_.space.distance(problem_.space.start()) > kHopeful;
   }
 
   /// One attempt along the surface. Returns how many moves it has judged.
@@ -155,7 +191,7 @@ class Search {
     if (outcome == SearchOutcome::kExhausted && judge_.undecided_count() > 0) {
       is_exhausted_ = true;
     } else if (outcome == SearchOutcome::kExhausted) {
-      plan_ = {.outcome = MoveOutcome::kNone};
+      plan_ = {.outcome = MoveOutcome::kNone, .assignment_bound = plan_.assignment_bound};
       plan_.certificate = MoveCertificate{
           .task = task_, .shapes = search.shapes(), .is_backward = end == End::kTarget};
     } else if (outcome == SearchOutcome::kFound) {
@@ -175,6 +211,7 @@ class Search {
     distance_ = distance;
     plan_.outcome = distance == 0 ? MoveOutcome::kFound : MoveOutcome::kNotFound;
     plan_.steps.clear();
+    plan_.judgement.reset();
     for (const model::Move& move : moves) {
       plan_.steps.push_back(step_of(move));
     }
@@ -192,8 +229,9 @@ class Search {
   bool is_exhausted_ = false;  ///< Nothing is left to try but undecided moves.
 };
 
-MovePlan unsafe_target(const MoveTask& task, const Judgement& judgement) {
+MovePlan unsafe_target(const MoveTask& task, const ShapeSpace& space, const Judgement& judgement) {
   MovePlan plan;
+  plan.assignment_bound = plan.length_min = space.assignment_bound(space.start());
   if (judgement.verdict == verdict::Verdict::kUndecided) {
     plan.undecided_count = 1;
     return plan;
@@ -203,13 +241,18 @@ MovePlan unsafe_target(const MoveTask& task, const Judgement& judgement) {
   return plan;
 }
 
-/// Judges the steps anew, as one sequence.
+/// Judges the steps anew, as one sequence, unless they were judged so when they were found. If they
+/// need not be safe, as far as time reaches.
 std::optional<base::Error> judge_plan(const MoveTask& task, const MoveOptions& options,
-                                      MovePlan& plan) {
-  if (plan.steps.empty()) {
+                                      const Patience& patience, MovePlan& plan) {
+  if (plan.steps.empty() || plan.judgement) {
     return std::nullopt;
   }
-  auto judged = judge_sequence(task.start, plan.steps, {.solver = options.solver});
+  SequenceOptions sequence{.solver = options.solver};
+  if (task.ignores_mechanics) {
+    sequence.is_interrupted = [&] { return patience.is_over(); };
+  }
+  auto judged = judge_sequence(task.start, plan.steps, sequence);
   if (!judged) {
     return judged.error();
   }
@@ -284,11 +327,12 @@ base::Result<MovePlan> find_moves(const MoveTask& task, const MoveOptions& optio
     }
     const Judgement target = judge_spec(task.target, options);
     if (!target.is_safe()) {
-      return unsafe_target(task, target);
+      return unsafe_target(task, problem.value().space, target);
     }
   }
+  const Patience patience(options.seconds_max, options.is_interrupted);
   MovePlan plan = Search(task, options, problem.value()).run();
-  if (auto error = judge_plan(task, options, plan)) {
+  if (auto error = judge_plan(task, options, patience, plan)) {
     return *std::move(error);
   }
   return plan;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <set>
@@ -22,9 +23,8 @@ using base::Cell;
 /// More moves than there are in any plan.
 constexpr int kNever = 1'000'000;
 
-/// The most modules alike that are assigned to cells, which takes as long as their cube; of more,
-/// each that is misplaced counts as one move.
-constexpr std::size_t kAssignedMax = 60;
+/// The most misplaced modules alike that are assigned once: a second or two.
+constexpr std::size_t kAssignedMax = 2000;
 
 /// What makes modules alike.
 using Alike = std::tuple<std::uint16_t, double, std::array<double, 3>, std::array<double, 3>>;
@@ -109,12 +109,6 @@ std::vector<Cell> translations(const base::Lattice& lattice) {
   return {found.begin(), found.end()};
 }
 
-/// How many of these cells, ascending, are none of the others.
-int misplaced(std::span<const Cell> cells, std::span<const Cell> others) {
-  return static_cast<int>(std::ranges::count_if(
-      cells, [&](const Cell& cell) { return !std::ranges::binary_search(others, cell); }));
-}
-
 int along(const Cell& direction, const Cell& way) {
   return direction.x * way.x + direction.y * way.y + direction.z * way.z;
 }
@@ -147,6 +141,36 @@ std::size_t ShapeHash::operator()(const Shape& shape) const {
   return static_cast<std::size_t>(key);
 }
 
+std::vector<Cell> only_in(std::span<const Cell> cells, std::span<const Cell> others) {
+  std::vector<Cell> left;
+  std::ranges::set_difference(cells, others, std::back_inserter(left));
+  return left;
+}
+
+LeastMoves::LeastMoves(const base::Lattice& lattice)
+    : lattice_(lattice), gains_(gains_of(lattice)) {}
+
+int LeastMoves::between(const Cell& from, const Cell& to) const {
+  const Cell way = difference(base::axial_of(lattice_, to), base::axial_of(lattice_, from));
+  int most = 0;
+  for (const auto& [direction, gain] : gains_) {
+    const int length = std::abs(along(direction, way));
+    most = std::max(most, gain != 0 ? (length + gain - 1) / gain : length != 0 ? kNever : 0);
+  }
+  return most;
+}
+
+Assignment LeastMoves::assign(std::span<const Cell> modules, std::span<const Cell> goals) const {
+  std::vector<int> costs;
+  costs.reserve(modules.size() * goals.size());
+  for (const Cell& from : modules) {
+    for (const Cell& to : goals) {
+      costs.push_back(between(from, to));
+    }
+  }
+  return plan::assign(costs, modules.size());
+}
+
 base::Result<ShapeSpace> ShapeSpace::create(const RobotState& start, const RobotState& target) {
   const Classes from = classes_of(start);
   const Classes to = classes_of(target);
@@ -161,7 +185,6 @@ base::Result<ShapeSpace> ShapeSpace::create(const RobotState& start, const Robot
     space.target_.insert(space.target_.end(), ends.begin(), ends.end());
     space.class_begin_.push_back(space.start_.size());
   }
-  space.gains_ = gains_of(start.lattice());
   return space;
 }
 
@@ -216,84 +239,26 @@ Shape ShapeSpace::after(const Shape& shape, const Cell& from, const Cell& to) co
   return moved;
 }
 
-int ShapeSpace::moves_between(const Cell& from, const Cell& to) const {
-  const base::Lattice& lattice = robot_.lattice();
-  const Cell way = difference(base::axial_of(lattice, to), base::axial_of(lattice, from));
-  int most = 0;
-  for (const auto& [direction, gain] : gains_) {
-    const int length = std::abs(along(direction, way));
-    most = std::max(most, gain != 0 ? (length + gain - 1) / gain : length != 0 ? kNever : 0);
-  }
-  return most;
-}
+int ShapeSpace::distance(const Shape& shape) const { return distance(shape, false); }
 
-int ShapeSpace::distance(const Shape& shape) const {
-  int total = 0;
+int ShapeSpace::assignment_bound(const Shape& shape) const { return distance(shape, true); }
+
+// Modules in cells of the target need not be assigned: LeastMoves fulfils the triangle inequality,
+// so some cheapest assignment leaves them where they are.
+int ShapeSpace::distance(const Shape& shape, bool is_exact) const {
+  std::int64_t total = 0;
   for (std::size_t i = 0; i + 1 < class_begin_.size(); ++i) {
     const std::size_t begin = class_begin_[i];
-    const std::size_t count = class_begin_[i + 1] - begin;
-    if (count > kAssignedMax) {
-      total += misplaced({shape.data() + begin, count}, {target_.data() + begin, count});
-      continue;
-    }
-    std::vector<int> costs(count * count);
-    for (std::size_t row = 0; row < count; ++row) {
-      for (std::size_t column = 0; column < count; ++column) {
-        costs[row * count + column] = moves_between(shape[begin + row], target_[begin + column]);
-      }
-    }
-    total += assignment_cost(costs, count);
+    const std::size_t class_size = class_begin_[i + 1] - begin;
+    const std::span<const Cell> cells{shape.data() + begin, class_size};
+    const std::span<const Cell> ends{target_.data() + begin, class_size};
+    const std::vector<Cell> misplaced = only_in(cells, ends);
+    const bool is_assigned =
+        is_exact ? misplaced.size() <= kAssignedMax : class_size <= kSearchedMax;
+    total += is_assigned ? least_.assign(misplaced, only_in(ends, cells)).cost
+                         : static_cast<std::int64_t>(misplaced.size());
   }
-  return total;
-}
-
-// Rows are taken up one by one, each by a shortest augmenting path in reduced costs. Legend: u, v
-// are the duals of rows and columns, `row_of` is the matching, index 0 stands for no row or column.
-int assignment_cost(std::span<const int> costs, std::size_t count) {
-  constexpr int kFar = std::numeric_limits<int>::max();
-  std::vector<int> u(count + 1);
-  std::vector<int> v(count + 1);
-  std::vector<std::size_t> row_of(count + 1);
-  std::vector<std::size_t> way(count + 1);
-  for (std::size_t row = 1; row <= count; ++row) {
-    std::vector<int> least(count + 1, kFar);
-    std::vector<bool> is_used(count + 1);
-    std::size_t column = 0;
-    row_of[0] = row;
-    do {
-      is_used[column] = true;
-      const std::size_t here = row_of[column];
-      int delta = kFar;
-      std::size_t next = 0;
-      for (std::size_t j = 1; j <= count; ++j) {
-        if (is_used[j]) {
-          continue;
-        }
-        const int reduced = costs[(here - 1) * count + j - 1] - u[here] - v[j];
-        if (reduced < least[j]) {
-          least[j] = reduced;
-          way[j] = column;
-        }
-        if (least[j] < delta) {
-          delta = least[j];
-          next = j;
-        }
-      }
-      for (std::size_t j = 0; j <= count; ++j) {
-        if (is_used[j]) {
-          u[row_of[j]] += delta;
-          v[j] -= delta;
-        } else {
-          least[j] -= delta;
-        }
-      }
-      column = next;
-    } while (row_of[column] != 0);
-    for (; column != 0; column = way[column]) {
-      row_of[column] = row_of[way[column]];
-    }
-  }
-  return -v[0];
+  return static_cast<int>(std::min<std::int64_t>(total, std::numeric_limits<int>::max()));
 }
 
 }  // namespace holdfast::plan

@@ -72,13 +72,18 @@ struct MovePlan {
   MoveOutcome outcome = MoveOutcome::kNotFound;
   /// The steps to the target, or if it is not found to the nearest shape that was reached.
   std::vector<model::Step> steps = {};
-  bool is_shortest = false;     ///< No plan has fewer steps.
-  int length_min = 0;           ///< No plan has fewer steps than this.
+  bool is_shortest = false;  ///< No plan has fewer steps.
+  int length_min = 0;        ///< No plan has fewer steps than this.
+  /// The cheapest assignment of modules to cells of the target, each with the least number of moves
+  /// as if it were alone: a lower bound of the number of steps. Of more than 2,000 misplaced
+  /// modules alike each counts as one move.
+  int assignment_bound = 0;
   std::size_t state_count = 0;  ///< Moves judged, that is shapes beside others.
   /// Moves, or the target, that were not taken because they are undecided: where there are any,
   /// `none` and the shortest plan are not proved.
   std::size_t undecided_count = 0;
-  /// The judgement of the steps, made anew as of one sequence; none if there is no step.
+  /// The judgement of the steps as of one sequence; none if there is no step. If mechanics is
+  /// ignored, of the first of them, as far as time reached.
   std::optional<SequenceJudgement> judgement = {};
   std::optional<MoveCertificate> certificate = {};  ///< Of kNone.
 };

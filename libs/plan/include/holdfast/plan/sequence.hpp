@@ -60,6 +60,8 @@ struct SequenceOptions {
   std::size_t solved_count_max = std::numeric_limits<std::size_t>::max();
   /// Called between steps, with how many are judged; from the thread that called.
   std::function<void(std::size_t judged_count)> progress = {};
+  /// Asked before each step, by any thread; true leaves out that step and those behind it.
+  std::function<bool()> is_interrupted = {};
 };
 
 struct SequenceJudgement {
