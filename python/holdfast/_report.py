@@ -148,8 +148,8 @@ class Report(Judged, Drawn):
         and ``margin_mm``, None where they are not known. Each is judged by itself; the report's
         verdict is the worst one's, its loads are those of all.
         """
-        return [dict(zip(('modules', 'first', 'verdict', 'load_ratio_max', 'margin_mm'),
-                         (count, first, Verdict(verdict), ratio, margin)))
+        return [{'modules': count, 'first': first, 'verdict': Verdict(verdict),
+                 'load_ratio_max': ratio, 'margin_mm': margin}
                 for count, first, verdict, ratio, margin in self._held.pieces]
 
     @property

@@ -226,7 +226,7 @@ std::vector<std::vector<std::int32_t>> lists_of(Parts& parts, std::size_t count)
     }
     lists[base::at(here)].push_back(i);
   }
-  std::ranges::stable_sort(lists, std::greater<>(), &std::vector<std::int32_t>::size);
+  std::ranges::stable_sort(lists, std::greater<>(), [](const auto& list) { return list.size(); });
   return lists;
 }
 

@@ -168,27 +168,53 @@ bool may_let_slip(const Situation& here, const Assessment& assessment, bool is_b
          find_slip(here.robot, assessment.equilibrium).has_value();
 }
 
+/// Whether all equilibria stand by the model, without more sideways than friction.
+bool do_hold(const Situation& here, const std::vector<Equilibrium>& all) {
+  return !all.empty() && std::ranges::all_of(all, [&](const Equilibrium& one) {
+    return !find_slip(here.robot, one) &&
+           (here.rule == StabilityRule::kHeld || model_stability(here, one).is_stable);
+  });
+}
+
+/// The equilibria by the exact law, with slips if it needs them; none where one is not known.
+std::vector<Equilibrium> slid_by_exact_law(const Situation& here,
+                                           solver::EquilibriumSolver& solver) {
+  const solver::ContactOptions contact = {.law = ContactLaw::kUnilateral,
+                                          .gamma = kStableGammas[0]};
+  const Equilibrium stuck = solver.solve(contact);
+  if (stuck.outcome != Outcome::kSettled || stuck.open_but_held_count > 0) {
+    return {};
+  }
+  return find_slip(here.robot, stuck) ? solver.let_slip(stuck, contact)
+                                      : std::vector<Equilibrium>{stuck};
+}
+
 /// Puts the equilibrium by Coulomb's law in place of one whose feet carry more sideways than their
-/// friction. Returns that in which feet that slip turn freely, where they would not; nothing is
-/// changed where no slips are known, or the robot would not stand by the model.
-std::optional<Equilibrium> let_slip(const Situation& here, solver::EquilibriumSolver& solver,
-                                    Assessment& assessment) {
+/// friction. Returns further ones that have to agree: that in which feet that slip turn freely,
+/// where they would not; and those by the exact law where open facets may pull. Nothing is changed
+/// where slips are not known by all of them, or the robot would not stand by the model.
+std::vector<Equilibrium> let_slip(const Situation& here, solver::EquilibriumSolver& solver,
+                                  Assessment& assessment) {
   Equilibrium& found = assessment.equilibrium;
   const bool is_exact_law = found.law == ContactLaw::kUnilateral;
   auto slid = solver.let_slip(
       found, {.law = found.law,
               .gamma = is_exact_law ? kStableGammas[0] : here.robot.material().contact_gamma});
-  const bool holds = !slid.empty() && std::ranges::all_of(slid, [&](const Equilibrium& one) {
-    return !find_slip(here.robot, one) && (here.is_on_flat_floor || are_all_stuck(one)) &&
-           (here.rule == StabilityRule::kHeld || model_stability(here, one).is_stable);
-  });
-  if (!holds) {
-    return std::nullopt;
+  if (!do_hold(here, slid)) {
+    return {};
+  }
+  if (!here.is_on_flat_floor && !is_exact_law && !std::ranges::all_of(slid, are_all_stuck)) {
+    const auto exact = slid_by_exact_law(here, solver);
+    if (!do_hold(here, exact)) {
+      return {};
+    }
+    slid.insert(slid.end(), exact.begin(), exact.end());
   }
   slid.front().begin_with(found);
   found = std::move(slid.front());
   assessment.model = model_stability(here, found);
-  return slid.size() > 1 ? std::optional(std::move(slid.back())) : std::nullopt;
+  slid.erase(slid.begin());
+  return slid;
 }
 
 /// Takes another equilibrium's largest load ratio into the range, which is as far off.
@@ -214,12 +240,12 @@ void solve(const Situation& here, const solver::EquilibriumOptions& asked, Asses
   if (assessment.equilibrium.outcome != Outcome::kSettled) {
     return;
   }
-  const auto turning = may_let_slip(here, assessment, options.is_bonded)
+  const auto further = may_let_slip(here, assessment, options.is_bonded)
                            ? let_slip(here, solver, assessment)
-                           : std::nullopt;
+                           : std::vector<Equilibrium>();
   const LoadRange answers = assess_loads(here, options, assessment);
-  if (turning) {
-    widen_by(here.robot, *turning, assessment);
+  for (const Equilibrium& other : further) {
+    widen_by(here.robot, other, assessment);
   }
   if (stands_by_paper(assessment) && assessment.equilibrium.slip.empty()) {
     look_beside(here, solver, options, answers, assessment);

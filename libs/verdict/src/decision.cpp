@@ -147,7 +147,8 @@ Reason slip_remark(const model::Robot& robot, const Equilibrium& equilibrium) {
   for (std::size_t i = 0; i < equilibrium.slip.size(); ++i) {
     const model::Facet& facet = robot.facets()[i];
     const auto local = beam.to_local(facet.direction, equilibrium.facet_force[i]);
-    const double across = std::hypot(local[0], local[1]);
+    const double exact = std::hypot(local[0], local[1]);
+    const double across = exact < kLoadRatioTie * std::abs(local[2]) ? 0 : exact;
     if (equilibrium.slip[i] == std::array<double, 3>{}) {
       continue;
     }

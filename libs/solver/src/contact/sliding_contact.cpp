@@ -253,8 +253,8 @@ bool SlidingContact::has_other_states(std::size_t facet) {
   system().set_facet(facet, {.pressed = !was_pressed}, true);
   const bool stays =
       settle_slips() == Outcome::kSettled && next_states()[facet].pressed != was_pressed;
-  const bool is_other =
-      stays && settle() == Outcome::kSettled && !std::ranges::equal(before, system().facets());
+  const bool is_other = stays && settle() == Outcome::kSettled &&
+                        !std::equal(before.begin(), before.end(), system().facets().begin());
   for (std::size_t i = 0; i < before.size(); ++i) {
     system().set_facet(i, before[i].state, before[i].is_held);
   }

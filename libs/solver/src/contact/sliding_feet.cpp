@@ -35,9 +35,9 @@ constexpr std::size_t kOneFreeMax = 32;
 /// Steps of the coefficient of friction on the way from where nothing slips, or from none.
 constexpr int kFrictionSteps = 12;
 
-/// Sweeps, and products of numbers in them, that may be tried: a tenth of a second.
-constexpr int kSweepMax = 1 << 14;
-constexpr std::size_t kSweepWorkMax = 30'000'000;
+/// Sweeps, and products of numbers in them, that may be tried: some hundredths of a second.
+constexpr int kSweepMax = 1 << 12;
+constexpr std::size_t kSweepWorkMax = 10'000'000;
 
 struct Disc {
   std::array<double, 2> nearest{};    ///< The nearest point of the disc,

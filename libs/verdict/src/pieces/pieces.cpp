@@ -225,7 +225,8 @@ void join_reasons(const std::vector<JudgedPiece>& pieces, Assessment& whole) {
   for (const JudgedPiece& one : pieces) {
     for (std::size_t i = 0; i < one.found.reasons.size(); ++i) {
       const ReasonCode code = one.found.reasons[i].code;
-      const bool is_said = std::ranges::count(whole.reasons, code, &Reason::code) > 0;
+      const bool is_said = std::ranges::any_of(
+          whole.reasons, [&](const Reason& known) { return known.code == code; });
       if (!is_said && (i > 0 || &one == &pieces.front())) {
         whole.reasons.push_back(
             in_whole(one.found.reasons[i], one.piece->modules, one.connections));
