@@ -165,13 +165,14 @@ std::shared_ptr<io::OrderReport> order(const Structure& target, const py::handle
                                        const py::handle& seconds, const py::handle& help_seconds,
                                        const py::handle& threads, py::object progress) {
   Watch watch(std::move(progress));
-  OrderRequest request{.group_size = integer_of(group, "group", 1, 16),
-                       .is_reversed = is_reversed,
-                       .seed = seed_of(seed),
-                       .seconds_max = seconds_of(seconds, "seconds"),
-                       .help_seconds_max = seconds_of(help_seconds, "help_seconds"),
-                       .is_exact = is_exact,
-                       .thread_count = thread_count_of(threads)};
+  OrderRequest request;
+  request.group_size = integer_of(group, "group", 1, 16);
+  request.is_reversed = is_reversed;
+  request.seed = seed_of(seed);
+  request.seconds_max = seconds_of(seconds, "seconds");
+  request.help_seconds_max = seconds_of(help_seconds, "help_seconds");
+  request.is_exact = is_exact;
+  request.thread_count = thread_count_of(threads);
   if (!start.is_none()) {
     request.start = cells_of(start, "start");
   }
