@@ -197,6 +197,7 @@ def structure(*modules, **members):
 ROBOTS = {
     'latched': structure([0, 0, 0], [0, 0, 1], [1, 0, 1], material={'shear_strength_n': 50},
                          steps=[{'attach': [[2, 0, 1]]}]),
+    'foot': structure([0, 0, 0]),
     'row': structure([0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0]),
     'shifted': structure([1, 0, 0], [2, 0, 0], [3, 0, 0], [4, 0, 0]),
     'pieces': structure([0, 0, 0], [0, 0, 1], [5, 0, 0], [5, 0, 1], [6, 0, 1]),
@@ -247,6 +248,8 @@ def commands(scenarios, tests):
     yield ['order', 'row.json', '--scatter', '10%', '--lose-one', '--safety-factor', '1.5']
     yield from (['order', f'{plan}/{name}.json'] for name in ('crane_near_limit', 'pair', 'arch'))
     yield ['order', f'{plan}/core.json', '--reach', 'surface', '--source', '3,0,0', '--group', '2']
+    yield ['order', 'row.json', '--reach', 'surface', '--source', '-1,0,0', '--from', 'foot.json',
+           '--avoid', '-1,0,1:0,0,1', '--avoid', '0,1,0', '--avoid', '0,-1,0']
     yield ['move', f'{plan}/around_arm_from.json', f'{plan}/around_arm_to.json', '--pivot']
     yield ['move', 'row.json', 'shifted.json', '--within', '0,0,0:4,0,0']
     yield ['move', 'row.json', 'leaning.json']

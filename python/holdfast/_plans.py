@@ -362,7 +362,8 @@ class Order(_Texts, _Sought):
 
 
 def order(target: Union[Robot, Path], *, start: Optional[Cells] = None, reach: str = 'free',
-          source: Optional[Cell] = None, group: int = 1, reverse: bool = False,
+          source: Optional[Cell] = None, avoid: Optional[Cells] = None, group: int = 1,
+          reverse: bool = False,
           exact: bool = False, seed: int = 0, seconds: float = 300, help_seconds: float = 0,
           threads: int = 0, progress: Progress = None) -> Order:
     """In which order can a robot be built so that it is safe all the way?
@@ -377,6 +378,8 @@ def order(target: Union[Robot, Path], *, start: Optional[Cells] = None, reach: s
     reach, source
         How a module gets to its cell: ``free``, any cell; ``line``, a straight way in; ``surface``,
         sliding along the robot from `source`.
+    avoid
+        Cells that bar these ways and carry nothing.
     group
         Modules that are attached at the same instant at most, 1 to 16: states in between are not
         judged.
@@ -395,9 +398,9 @@ def order(target: Union[Robot, Path], *, start: Optional[Cells] = None, reach: s
     <holdfast.Order found: 2 steps>
     """
     with told(progress, 'order') as tell:
-        found: Order = Order._of(_core.order(_robot(target)._held, start, reach, source, group,
-                                             reverse, exact, seed, seconds, help_seconds, threads,
-                                             tell))
+        found: Order = Order._of(_core.order(_robot(target)._held, start, reach, source, avoid,
+                                             group, reverse, exact, seed, seconds, help_seconds,
+                                             threads, tell))
     return found
 
 

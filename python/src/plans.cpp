@@ -162,18 +162,19 @@ std::optional<std::pair<std::size_t, int>> place_of(const std::optional<plan::St
 
 std::shared_ptr<io::OrderReport> order(const Structure& target, const py::handle& start,
                                        const py::handle& reach_name, const py::handle& source,
-                                       const py::handle& group, bool is_reversed, bool is_exact,
-                                       const py::handle& seed, const py::handle& seconds,
-                                       const py::handle& help_seconds, const py::handle& threads,
-                                       py::object progress) {
+                                       const py::handle& avoid, const py::handle& group,
+                                       bool is_reversed, bool is_exact, const py::handle& seed,
+                                       const py::handle& seconds, const py::handle& help_seconds,
+                                       const py::handle& threads, py::object progress) {
   Watch watch(std::move(progress));
-  OrderRequest request{.group_size = integer_of(group, "group", 1, 16),
-                       .is_reversed = is_reversed,
-                       .seed = seed_of(seed),
-                       .seconds_max = seconds_of(seconds, "seconds"),
-                       .help_seconds_max = seconds_of(help_seconds, "help_seconds"),
-                       .is_exact = is_exact,
-                       .thread_count = thread_count_of(threads)};
+  OrderRequest request;
+  request.group_size = integer_of(group, "group", 1, 16);
+  request.is_reversed = is_reversed;
+  request.seed = seed_of(seed);
+  request.seconds_max = seconds_of(seconds, "seconds");
+  request.help_seconds_max = seconds_of(help_seconds, "help_seconds");
+  request.is_exact = is_exact;
+  request.thread_count = thread_count_of(threads);
   if (!start.is_none()) {
     request.start = cells_of(start, "start");
   }
@@ -186,6 +187,9 @@ std::shared_ptr<io::OrderReport> order(const Structure& target, const py::handle
   }
   if (!source.is_none()) {
     request.rule.source = cell_of(source, "source");
+  }
+  if (!avoid.is_none()) {
+    request.rule.avoid = cells_of(avoid, "avoid");
   }
   if ((reach == "surface") != request.rule.source.has_value()) {
     throw Error("reach 'surface' and source belong together");

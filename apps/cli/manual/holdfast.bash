@@ -92,6 +92,7 @@ _holdfast() {
         --from) files=1 ;;
         --reach) words="free line surface" ;;
         --source) : ;;
+        --avoid) : ;;
         --group) : ;;
         --seed) : ;;
         --seconds) : ;;
@@ -113,7 +114,7 @@ _holdfast() {
         --support-z) : ;;
         --pitch) : ;;
         --safety-factor|--margin) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --from --reach --source --group --reverse --seed --exact --seconds --help-seconds --threads -q --quiet -o --output --json --certificate --strength-needed --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --from --reach --source --avoid --group --reverse --seed --exact --seconds --help-seconds --threads -q --quiet -o --output --json --certificate --strength-needed --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin"; else files=1; fi ;;
       esac
       ;;
     move)

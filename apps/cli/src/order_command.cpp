@@ -26,6 +26,7 @@ struct OrderArguments {
   std::string start;
   std::string reach = "free";
   std::string source;
+  std::vector<std::string> avoid;
   std::size_t group_size = 1;
   bool is_reversed = false;
   bool is_exact = false;
@@ -47,6 +48,38 @@ struct OrderArguments {
             {"--certificate", certificate, FileFormat::kJson}};
   }
 };
+
+/// A box of more cells than this is taken for a mistake.
+constexpr std::int64_t kAvoidedMax = 1'000'000;
+
+/// The cells of "X,Y,Z", or of the box "X,Y,Z:X,Y,Z"; none if the text is neither.
+std::optional<std::vector<base::Cell>> cells_of_text(std::string_view text) {
+  base::Cell low;
+  base::Cell high;
+  if (!take_cell(text, low)) {
+    return std::nullopt;
+  }
+  high = low;
+  if (!text.empty() && (!take_mark(text, ':') || !take_cell(text, high) || !text.empty())) {
+    return std::nullopt;
+  }
+  const auto width = [](std::int32_t from, std::int32_t to) {
+    return std::max<std::int64_t>(0, std::int64_t{to} - from + 1);
+  };
+  const std::int64_t area = width(low.x, high.x) * width(low.y, high.y);
+  if (area > kAvoidedMax || area * width(low.z, high.z) > kAvoidedMax) {
+    return std::nullopt;
+  }
+  std::vector<base::Cell> cells;
+  for (base::Cell cell = low; cell.z <= high.z; ++cell.z) {
+    for (cell.y = low.y; cell.y <= high.y; ++cell.y) {
+      for (cell.x = low.x; cell.x <= high.x; ++cell.x) {
+        cells.push_back(cell);
+      }
+    }
+  }
+  return cells.empty() ? std::nullopt : std::optional(std::move(cells));
+}
 
 /// All cells of a document that is to be the start.
 base::Result<std::vector<base::Cell>> start_cells(const OrderArguments& options,
@@ -94,6 +127,10 @@ OrderRequest request_of(const OrderArguments& options, Progress& progress) {
                                                     : plan::Reach::kFree;
   if (!options.source.empty()) {
     request.rule.source = read_cell(options.source);
+  }
+  for (const std::string& text : options.avoid) {
+    const auto cells = cells_of_text(text).value();  // It was checked when it was read.
+    request.rule.avoid.insert(request.rule.avoid.end(), cells.begin(), cells.end());
   }
   request.progress = [&progress](std::size_t states, std::size_t here, std::size_t furthest) {
     progress.show([&] {
@@ -245,8 +282,21 @@ void add_ways(CLI::App& command, OrderArguments& options) {
         return read_cell(text) ? "" : "expected a cell, such as 3,0,0";
       });
   command
+      .add_option(
+          "--avoid", options.avoid,
+          "A cell, or a box of cells, that bars ways of --reach line and surface and carries "
+          "nothing; may be given several times")
+      ->type_name("X,Y,Z[:X,Y,Z]")
+      ->allow_extra_args(false)
+      ->check([](const std::string& text) {
+        return cells_of_text(text) ? ""
+                                   : "expected a cell, such as 3,0,0, or a box with its low corner "
+                                     "first, such as 0,0,1:4,4,1, of at most a million cells";
+      });
+  command
       .add_option("--group", options.group_size,
-                  "Attach up to K modules at the same instant: states in between are not judged")
+                  "Attach up to K modules that arrive at the same instant: states in between are "
+                  "not judged")
       ->type_name("K")
       ->check(CLI::Range(1, 16))
       ->capture_default_str();

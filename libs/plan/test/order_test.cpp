@@ -508,5 +508,42 @@ TEST(RobotOrder, is_helped_below_the_support_level_where_the_target_is_there) {
   EXPECT_EQ(help->supports[0].z, -2);
 }
 
+/// A module between two others gets in from above only, and not through a cell to be avoided. The
+/// certificate says which that is: without it, it proves nothing.
+TEST(Order, avoids_cells_and_carries_nothing_by_them) {
+  const OrderTask task{
+      .target = {.existing = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {2, 0, 0}, {2, 0, 1}, {1, 0, 1}}},
+      .start = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {2, 0, 0}, {2, 0, 1}},
+      .rule = {.reach = Reach::kLine, .avoid = {{1, 0, 3}, {1, 1, 1}, {1, -1, 1}}}};
+  const auto barred = find_robot_order(task, {});
+  ASSERT_TRUE(barred);
+  ASSERT_EQ(barred.value().order.outcome, OrderOutcome::kNone);
+  OrderCertificate certificate = *barred.value().certificate;
+  EXPECT_TRUE(verify(certificate));
+  certificate.task.rule.avoid.pop_back();
+  EXPECT_FALSE(verify(certificate));
+  EXPECT_EQ(find_robot_order(certificate.task, {}).value().order.outcome, OrderOutcome::kFound);
+  // An obstacle below the tip would carry it.
+  OrderTask arm{.target = {.existing = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {2, 0, 1}}},
+                .start = {{0, 0, 0}},
+                .rule = {.reach = Reach::kLine, .avoid = {{2, 0, 0}}}};
+  EXPECT_EQ(find_robot_order(arm, {}).value().order.outcome, OrderOutcome::kNone);
+  arm.rule.avoid = {};
+  arm.target.obstacles = {{.from = {2, 0, 0}, .to = {2, 0, 0}}};
+  EXPECT_NE(find_robot_order(arm, {}).value().order.outcome, OrderOutcome::kNone);
+}
+
+TEST(Order, refuses_cells_to_be_avoided_that_are_in_use) {
+  OrderTask task{.target = {.existing = {{0, 0, 0}, {1, 0, 0}}}, .rule = {.avoid = {{5, 0, 0}}}};
+  EXPECT_NE(find_robot_order(task, {}).error().message.find("choose line or surface"),
+            std::string::npos);
+  task.rule = {.reach = Reach::kLine, .avoid = {{1, 0, 0}}};
+  EXPECT_NE(find_robot_order(task, {}).error().message.find("has a module there"),
+            std::string::npos);
+  task.rule = {.reach = Reach::kSurface, .source = Cell{2, 0, 0}, .avoid = {{2, 0, 0}}};
+  EXPECT_NE(find_robot_order(task, {}).error().message.find("modules come from there"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace holdfast::plan

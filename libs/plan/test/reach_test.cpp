@@ -57,6 +57,32 @@ TEST(Reach, by_a_line_needs_one_way_that_is_free_all_along) {
                    .can_reach(all_but(lidded, {{1, 1, 2}}), {1, 1, 1}));
 }
 
+/// What is to be avoided bars ways as an obstacle does that nothing rests on.
+TEST(Reach, is_barred_by_cells_to_be_avoided_as_by_obstacles) {
+  const model::RobotSpec spec = box();
+  const std::vector<std::vector<Cell>> avoided = {
+      {{1, 1, 9}}, {{1, 1, 3}}, {{-1, 0, 0}}, {{3, 1, 1}, {1, 3, 2}}};
+  for (const std::vector<Cell>& cells : avoided) {
+    model::RobotSpec with_obstacles = spec;
+    with_obstacles.obstacles = {{.from = {}, .to = {}, .cells = cells}};
+    for (ReachRule rule : {ReachRule{.reach = Reach::kLine},
+                           ReachRule{.reach = Reach::kSurface, .source = Cell{-1, 1, 1}}}) {
+      const ReachFinder obstacles(with_obstacles, rule);
+      rule.avoid = cells;
+      const ReachFinder barred(spec, rule);
+      for (const Cell& absent : spec.existing) {
+        const ElementSet state = all_but(spec, {absent, {1, 1, 2}});
+        for (const Cell& to : {absent, Cell{1, 1, 1}, Cell{1, 1, 2}, cells.front()}) {
+          EXPECT_EQ(barred.can_reach(state, to), obstacles.can_reach(state, to));
+        }
+      }
+    }
+  }
+  // A lid far above closes the shaft.
+  EXPECT_FALSE(ReachFinder(spec, {.reach = Reach::kLine, .avoid = {{1, 1, 9}}})
+                   .can_reach(all_but(spec, {{1, 1, 2}}), {1, 1, 1}));
+}
+
 TEST(Reach, along_the_surface_goes_round_corners_and_down_a_shaft) {
   const model::RobotSpec spec = box();
   const ReachFinder surface(spec, {.reach = Reach::kSurface, .source = Cell{3, 1, 0}});

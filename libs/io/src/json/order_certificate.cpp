@@ -126,6 +126,13 @@ void CertificateReader::read_task() {
   if (!at("source").is_null()) {
     task.rule.source = cell("source", at("source"));
   }
+  if (!at("avoid").is_null() && !at("avoid").is_array()) {
+    fail("avoid", "an array of cells");
+    return;
+  }
+  for (const Json& value : at("avoid")) {
+    task.rule.avoid.push_back(cell("avoid", value));
+  }
 }
 
 void CertificateReader::read_states() {
@@ -284,16 +291,20 @@ std::string write_order_certificate(const Document& target,
   structure.erase(structure.find_last_not_of('\n') + 1);
   const bool is_growing = certificate.closure.sense == plan::Sense::kGrowing;
   const auto& source = task.rule.source;
-  return lines('{',
-               {member("format", json_text(std::string(kFormat))), member("version", "1"),
-                member("target", structure), member("start", json_text(std::span(task.start))),
-                member("group", fmt::format("{}", task.group_size)),
-                member("reach", json_text(std::string(plan::name(task.rule.reach)))),
-                member("source", source ? json_text(*source) : "null"),
-                member("sense", json_text(std::string(is_growing ? "attach" : "detach"))),
-                member("states", array(states, 2)), member("blocked", array(blocked, 2))},
-               '}', 0) +
-         "\n";
+  Items items = {member("format", json_text(std::string(kFormat))),
+                 member("version", "1"),
+                 member("target", structure),
+                 member("start", json_text(std::span(task.start))),
+                 member("group", fmt::format("{}", task.group_size)),
+                 member("reach", json_text(std::string(plan::name(task.rule.reach)))),
+                 member("source", source ? json_text(*source) : "null")};
+  if (!task.rule.avoid.empty()) {
+    items.push_back(member("avoid", json_text(std::span(task.rule.avoid))));
+  }
+  items.push_back(member("sense", json_text(std::string(is_growing ? "attach" : "detach"))));
+  items.push_back(member("states", array(states, 2)));
+  items.push_back(member("blocked", array(blocked, 2)));
+  return lines('{', items, '}', 0) + "\n";
 }
 
 base::Result<NamedOrderCertificate> read_order_certificate(std::string_view text) {

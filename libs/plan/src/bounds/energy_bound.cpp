@@ -306,7 +306,9 @@ bool EnergyBound::begin(const std::vector<Element>& elements, const verdict::Ass
   const bool is_stuck =
       std::ranges::all_of(solved.equilibrium.contact,
                           [](const ContactState& state) { return state == mechanics::kStuck; });
-  if (solved.verdict != verdict::Verdict::kSafe || !is_stuck || solved.several ||
+  const bool is_known = solved.verdict == verdict::Verdict::kSafe ||
+                        (use_ == Use::kTrying && solved.verdict == verdict::Verdict::kOverload);
+  if (!is_known || !is_stuck || solved.several ||
       solved.stability_rule == verdict::StabilityRule::kContactForces ||
       solved.contact_model == verdict::ContactModel::kUnilateral || !is_plain(target_)) {
     has_core_ = false;

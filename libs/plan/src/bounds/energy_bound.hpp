@@ -71,7 +71,8 @@ class EnergyBound {
               const Adjoints& adjoints = {}, Use use = Use::kGrowing);
 
   /// Begins with a solved robot, whose modules are `elements` of the target, in that order. False
-  /// if nothing can be built on it: it is not safe, a facet tilts or is open, or the polygon does
+  /// if nothing can be built on it: it is not safe, but for an overload where modules are taken
+  /// back, a facet tilts or is open, or the polygon does
   /// not decide. Whatever was attached before must be there.
   /// With a section of this robot, modules that are attached must not have facets. Keeps a
   /// reference to it.

@@ -59,7 +59,7 @@ class PlaceTrial {
       find_adjoints_of(ranked);
       judge_open(solved, found);
     }
-    if (wish_.follows) {
+    if (wish_.follows && solved.verdict == verdict::Verdict::kSafe) {
       follow(solved, found);
     }
   }
@@ -83,7 +83,7 @@ class PlaceTrial {
       return {};
     }
     for (std::size_t i = 0; i < found.size(); ++i) {
-      if (!found[i].high && !wish_.is_late()) {
+      if (!found[i].is_decided() && !wish_.is_late()) {
         found[i] = try_place(bound, elements_.size() + i);
       }
     }
@@ -97,7 +97,7 @@ class PlaceTrial {
     EnergyBound bound(target_, nearby_, adjoints_, EnergyBound::Use::kTrying);
     FollowedRobot followed(spec_, target_, core, solved);
     for (std::size_t i = 0; i < found.size(); ++i) {
-      if (!found[i].high && !wish_.is_late() && bound.begin(elements_, solved)) {
+      if (!found[i].is_decided() && !wish_.is_late() && bound.begin(elements_, solved)) {
         found[i] = follow_place(bound, followed, elements_.size() + i, found[i]);
         followed.take_back(solved);
       }

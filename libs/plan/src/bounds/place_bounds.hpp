@@ -18,7 +18,13 @@ struct PlaceBound {
   /// What the largest load ratio does not exceed, if nothing breaks and all facets are stuck.
   std::optional<double> high = {};
   std::optional<double> low = {};  ///< What it is no less than, if all facets are stuck.
-  double shift_mm = 0;             ///< How far bending moves the centre of mass in plan, at most.
+
+  /// Whether a connection breaks, as certainly as `high` says that none does.
+  bool is_overload() const { return low && *low > 1 + 1e-3; }
+
+  bool is_decided() const { return high.has_value() || is_overload(); }
+
+  double shift_mm = 0;  ///< How far bending moves the centre of mass in plan, at most.
 };
 
 /// How places are tried.

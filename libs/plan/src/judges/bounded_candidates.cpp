@@ -35,7 +35,7 @@ bool BoundedCandidates::solve() {
   solved_ = assess(robot_, as_checked(robot_, solver));
   solved_.connections = {};
   const bool is_decided = look_.is_held() || look_.finder().has_polygon();
-  return solved_.verdict == Verdict::kSafe && is_decided;
+  return (solved_.verdict == Verdict::kSafe || solved_.verdict == Verdict::kOverload) && is_decided;
 }
 
 std::vector<BoundedCandidates::Place> BoundedCandidates::judge(
@@ -59,6 +59,12 @@ std::vector<BoundedCandidates::Place> BoundedCandidates::judge(
     const auto& [i, margin_mm] = waiting[k];
     const PlaceBound& bound = bounds[k];
     places[i].ratio_low = bound.low.value_or(places[i].ratio_low);
+    if (bound.is_overload()) {
+      places[i].candidate = Candidate{
+          .cell = open[k],
+          .is_robot = true,
+          .judgement = {.verdict = Verdict::kOverload, .margin_mm = margin_mm, .is_bound = true}};
+    }
     const bool stays = look_.is_held() || (margin_mm && bound.shift_mm < *margin_mm - doubt);
     if (bound.high && stays) {
       places[i].candidate = Candidate{.cell = open[k],

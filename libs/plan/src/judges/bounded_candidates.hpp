@@ -16,7 +16,7 @@
 namespace holdfast::plan {
 
 /// Judges candidates of a robot by bounds from one solution of it, whatever its size: those that
-/// topple, and most of those that are safe.
+/// topple, and most of those that are safe or, beside a robot that breaks itself, overloaded.
 class BoundedCandidates {
  public:
   struct Place {
@@ -25,7 +25,7 @@ class BoundedCandidates {
     double ratio_low = -std::numeric_limits<double>::infinity();
   };
 
-  /// Solves the robot. None if nothing can be built on that: it is not safe, a facet tilts or is
+  /// Solves the robot. None if nothing can be built on that: it is undecided, a facet tilts or is
   /// open, or more than a polygon and stuck facets decides. Keeps references.
   static std::unique_ptr<BoundedCandidates> make(const model::RobotSpec& spec,
                                                  const CandidateOptions& options);

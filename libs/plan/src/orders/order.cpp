@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <unordered_set>
 
 #include "bounds/robot_growth.hpp"
@@ -148,6 +149,29 @@ std::optional<base::Error> find_source_fault(const OrderTask& task) {
   return std::nullopt;
 }
 
+std::optional<base::Error> find_avoid_fault(const OrderTask& task) {
+  if (task.rule.avoid.empty()) {
+    return std::nullopt;
+  }
+  if (task.rule.reach == Reach::kFree) {
+    return base::bad_input(
+        "cells to be avoided bar ways, and modules that get anywhere have none: choose line or "
+        "surface");
+  }
+  const std::set<Cell> modules(task.target.existing.begin(), task.target.existing.end());
+  for (const Cell& cell : task.rule.avoid) {
+    if (modules.contains(cell)) {
+      return base::bad_input(fmt::format(
+          "the cell {} is to be avoided, but the target has a module there", model::text(cell)));
+    }
+    if (cell == task.rule.source) {
+      return base::bad_input(fmt::format(
+          "the cell {} is to be avoided, but modules come from there", model::text(cell)));
+    }
+  }
+  return std::nullopt;
+}
+
 /// What both search and replay need, checked.
 struct Setting {
   model::Robot target;
@@ -163,8 +187,10 @@ base::Result<Setting> make_setting(const OrderTask& task, int thread_count) {
   if (!target) {
     return target.error();
   }
-  if (const auto fault = find_source_fault(task)) {
-    return *fault;
+  for (const auto& find_fault : {find_avoid_fault, find_source_fault}) {
+    if (const auto fault = find_fault(task)) {
+      return *fault;
+    }
   }
   auto starts = find_starts(task, target.value());
   if (!starts) {

@@ -59,7 +59,8 @@ class HelpSearch {
 bool HelpSearch::is_free(const Cell& cell) const {
   const model::ObstacleIndex obstacles(task_.target.obstacles);
   return !taken_.contains(cell) && obstacles.find(cell) == model::CellIndex::kNone &&
-         (!floor_z_ || cell.z >= *floor_z_) && task_.rule.source != cell;
+         (!floor_z_ || cell.z >= *floor_z_) && task_.rule.source != cell &&
+         std::ranges::find(task_.rule.avoid, cell) == task_.rule.avoid.end();
 }
 
 void HelpSearch::list_cells() {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "barring_floor.hpp"
 #include "holdfast/base/lattice.hpp"
@@ -19,6 +20,15 @@ Cell low_of(const Cell& a, const Cell& b) {
 
 Cell high_of(const Cell& a, const Cell& b) {
   return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
+}
+
+/// All that bars ways but the floor.
+std::vector<model::Obstacle> what_bars(const model::RobotSpec& target, const ReachRule& rule) {
+  std::vector<model::Obstacle> obstacles = target.obstacles;
+  if (!rule.avoid.empty()) {
+    obstacles.push_back({.from = {}, .to = {}, .cells = rule.avoid});
+  }
+  return obstacles;
 }
 
 }  // namespace
@@ -38,12 +48,12 @@ const char* name(Reach reach) {
 ReachFinder::ReachFinder(const model::RobotSpec& target, ReachRule rule)
     : lattice_(target.lattice),
       floor_z_(barring_floor(target.support_z, target.existing)),
-      obstacles_(target.obstacles),
+      obstacles_(what_bars(target, rule)),
       obstacle_index_(obstacles_),
       modules_(target.existing.size()),
       low_(target.existing.front()),
       high_(low_),
-      rule_(rule) {
+      rule_(std::move(rule)) {
   for (std::size_t i = 0; i < target.existing.size(); ++i) {
     modules_.insert(target.existing[i], static_cast<std::int32_t>(i));
     low_ = low_of(low_, target.existing[i]);

@@ -28,6 +28,8 @@ struct ReachRule {
   Reach reach = Reach::kFree;
   /// The cell that modules come from; kSurface only.
   std::optional<base::Cell> source = {};
+  /// Cells that bar ways as obstacles do, and carry nothing; not for kFree, which has no ways.
+  std::vector<base::Cell> avoid = {};
 };
 
 /// Finds out which cells a module can get to while some modules of a target are there.
@@ -35,8 +37,9 @@ struct ReachRule {
 /// Along the surface a module goes from cell to cell, each of them free and beside a module that is
 /// there: to a neighbouring cell if it stays beside the same module, or if the module beside it has
 /// a neighbour in the same direction (a slide); or about one module to another cell beside it if a
-/// free cell lies between both (a convex turn). Floor and obstacles bar the way and carry nobody; a
-/// floor below which the target has a module is taken to end beside the robot, and bars nothing.
+/// free cell lies between both (a convex turn). Floor, obstacles and cells to be avoided bar the
+/// way and carry nobody; a floor below which the target has a module is taken to end beside the
+/// robot, and bars nothing.
 class ReachFinder {
  public:
   /// Keeps no reference.
