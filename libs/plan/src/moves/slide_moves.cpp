@@ -19,6 +19,9 @@ constexpr std::int32_t kMargin = 3;
 /// Some 20 bytes a cell.
 constexpr std::int64_t kGridCellsMax = 20'000'000;
 
+/// The most cubes; their prices take some seconds, again and again.
+constexpr std::size_t kCubesMax = 3000;
+
 /// The box of both shapes and what is around, as far as the rule allows.
 CellBox box_of(const RobotState& robot, const ShapeSpace& space, const MoveRule& rule) {
   CellBox box{.low = space.start().front(), .high = space.start().front()};
@@ -75,7 +78,7 @@ class WalkJudge : public SlideJudge {
       robot_.move({&asked_.from, 1}, {&asked_.to, 1});
     }
     std::size_t done = 0;
-    while (done + 1 < cells.size() && go(cells[done], cells[done + 1], cells.size())) {
+    while (done + 1 < cells.size() && go(cells[done], cells[done + 1])) {
       ++done;
     }
     const bool is_safe = done + 1 == cells.size();
@@ -110,12 +113,10 @@ class WalkJudge : public SlideJudge {
     Cell to;
   };
 
-  /// Makes a move of a walk of so many cells if it is safe.
-  bool go(const Cell& from, const Cell& to, std::size_t cell_count) {
-    constexpr std::size_t kSharingMin = 4;  // Fewer moves are not worth a core of their own.
-    auto judged =
-        judge_.judge_move(robot_, {.from = from, .to = to, .carrier = {}},
-                          found_.empty() ? nullptr : &found_.back(), cell_count > kSharingMin);
+  /// Makes a move if it is safe.
+  bool go(const Cell& from, const Cell& to) {
+    auto judged = judge_.judge_move(robot_, {.from = from, .to = to, .carrier = {}},
+                                    found_.empty() ? nullptr : &found_.back());
     if (!judged) {
       return false;
     }
@@ -138,7 +139,8 @@ class WalkJudge : public SlideJudge {
 
 std::optional<SlideTask> slide_task(const ShapeSpace& space, const MoveRule& rule) {
   const RobotState robot = space.state_of(space.start());
-  if (robot.lattice() != base::kCubic || rule.pivots || space.class_count() != 1) {
+  if (robot.lattice() != base::kCubic || rule.pivots || space.class_count() != 1 ||
+      space.start().size() > kCubesMax) {
     return std::nullopt;
   }
   const CellBox box = box_of(robot, space, rule);
