@@ -3,14 +3,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Times `holdfast move` on pairs of shapes of many cubes on a floor, and replays every plan.
 
-    python3 bench/moves.py HOLDFAST [--modules N ...] [--pairs slab line blob] [--seconds S]
+    python3 bench/moves.py HOLDFAST [--modules N ...] [--pairs slab middle line blob] [--seconds S]
                            [--strength N] [--keep FOLDER] [-- OPTIONS OF MOVE]
 
-slab: a solid block becomes a plate of one layer around the same corner. line: a row on the floor
-becomes a standing wall at its end. blob: two random blobs, grown cell by cell from the same one,
-`--seed` says which. --strength: what a connection holds, N, such as 1e5, by which nothing breaks;
-default: the strengths of Blinky Blocks.
-Plans are replayed by what shapes alone say (`replay`). Prints a table in Markdown.
+slab: a solid block becomes a plate of one layer around the same corner; middle: around the block.
+line: a row on the floor becomes a standing wall at its end. blob: two random blobs, grown cell by
+cell from the same one, `--seed` says which. --strength: what a connection holds, N, such as 1e5, by
+which nothing breaks; default: the strengths of Blinky Blocks. Plans are replayed by what shapes
+alone say (`replay`). Prints a table in Markdown.
 """
 import argparse
 import json
@@ -58,6 +58,11 @@ def root(count, power):
 def pair(kind, count, seed):
     if kind == 'slab':
         return (box(count, root(count, 3), root(count, 3)), box(count, root(count, 2), count))
+    if kind == 'middle':
+        plate = box(count, root(count, 2), count)
+        inset = (root(count, 2) - root(count, 3)) // 2
+        block = box(count, root(count, 3), root(count, 3))
+        return [plus(cell, (inset, inset, 0)) for cell in block], plate
     if kind == 'line':
         width = root(count, 2)
         return ([(i, 0, 0) for i in range(count)], box(count, width, 1))
@@ -130,7 +135,7 @@ def run(arguments, kind, count, folder):
         [arguments.holdfast, 'move', *map(str, files), '-q', '-o', str(plan), '--json', str(report),
          '--seconds', str(arguments.seconds), *arguments.options], check=False)
     wall = time.monotonic() - before
-    if done.returncode not in (0, 2):
+    if done.returncode not in (0, 1, 2):
         sys.exit(f'{kind} {count}: exit code {done.returncode}')
     answer = json.loads(report.read_text())
     if answer['result'] == 'found':
@@ -146,7 +151,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split('\n')[0])
     parser.add_argument('holdfast')
     parser.add_argument('--modules', type=int, nargs='+', default=[30, 100, 300, 1000])
-    parser.add_argument('--pairs', nargs='+', default=['slab', 'line', 'blob'])
+    parser.add_argument('--pairs', nargs='+', default=['slab', 'middle', 'line', 'blob'])
     parser.add_argument('--seconds', type=float, default=60)
     parser.add_argument('--strength', type=float)
     parser.add_argument('--seed', type=int, default=1)

@@ -131,6 +131,8 @@ TEST(Slides, lead_from_any_shape_to_any_other) {
   for (std::uint64_t seed = 1; seed <= case_count && !testing::Test::HasFatalFailure(); ++seed) {
     compare(seed, far_count, far_missed);
   }
+  RecordProperty("far", far_count);
+  RecordProperty("far_missed", far_missed);
   EXPECT_LE(20 * far_missed, far_count);
 }
 

@@ -42,7 +42,7 @@ verdict::Verdict MoveJudge::judge(const RobotState& before, const model::Step& s
 
 std::optional<StepJudgement> MoveJudge::judge_move(const RobotState& before,
                                                    const model::Move& move,
-                                                   const StepJudgement* known, bool shares_core) {
+                                                   const StepJudgement* known) {
   ++count_;
   const model::Step step = step_of(move);
   const auto transition = find_transition(before, step);
@@ -50,7 +50,7 @@ std::optional<StepJudgement> MoveJudge::judge_move(const RobotState& before,
     return std::nullopt;
   }
   auto judged = stage_judge_.judge(before, step, transition.value(),
-                                   known != nullptr ? &known->stages.back() : nullptr, shares_core);
+                                   known != nullptr ? &known->stages.back() : nullptr, true);
   if (!judged) {
     return std::nullopt;
   }

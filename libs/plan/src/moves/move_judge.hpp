@@ -22,9 +22,9 @@ class MoveJudge {
   bool is_safe(const RobotState& before, const model::Move& move, const Shape& after);
 
   /// The judgement of a move if it is safe at every stage. `known`: that of the move before, by
-  /// which the same module came; `shares_core`: others of the same module follow or went before.
+  /// which the same module came. Moves of one module after another share the solution of the rest.
   std::optional<StepJudgement> judge_move(const RobotState& before, const model::Move& move,
-                                          const StepJudgement* known, bool shares_core);
+                                          const StepJudgement* known);
 
   bool ignores_mechanics() const { return task_.ignores_mechanics; }
 

@@ -133,6 +133,10 @@ class Search {
     if (plan_.undecided_count == 0) {
       plan_.length_min = std::max({plan_.length_min, forth_.length_min(), back_.length_min()});
     }
+    if (plan_.outcome == MoveOutcome::kFound && module_count <= kSearchedMax &&
+        length() > plan_.length_min) {
+      slide();
+    }
     if (plan_.outcome == MoveOutcome::kFound) {
       plan_.length_min = std::min(plan_.length_min, length());
     }
@@ -148,8 +152,8 @@ class Search {
     for (const model::Move& move : found->moves) {
       shape = problem_.space.after(shape, move.from, move.to);
     }
-    keep(found->moves, found->is_found ? 0 : problem_.space.distance(shape));
-    if (found->is_found && !task_.ignores_mechanics) {
+    const bool is_kept = keep(found->moves, problem_.space.distance(shape));
+    if (is_kept && !task_.ignores_mechanics && !found->moves.empty()) {
       plan_.judgement = sum_up(std::move(found->judged));
     }
   }
@@ -204,9 +208,12 @@ class Search {
 
   int length() const { return static_cast<int>(plan_.steps.size()); }
 
-  void keep(const std::vector<model::Move>& moves, int distance) {
-    if (distance >= distance_) {
-      return;
+  /// Keeps moves to a shape nearer than any before, or a shorter plan; whether it does.
+  bool keep(const std::vector<model::Move>& moves, int distance) {
+    const bool is_shorter =
+        distance == 0 && plan_.outcome == MoveOutcome::kFound && moves.size() < plan_.steps.size();
+    if (distance >= distance_ && !is_shorter) {
+      return false;
     }
     distance_ = distance;
     plan_.outcome = distance == 0 ? MoveOutcome::kFound : MoveOutcome::kNotFound;
@@ -215,6 +222,7 @@ class Search {
     for (const model::Move& move : moves) {
       plan_.steps.push_back(step_of(move));
     }
+    return true;
   }
 
   const MoveTask& task_;

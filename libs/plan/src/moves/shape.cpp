@@ -143,7 +143,8 @@ std::size_t ShapeHash::operator()(const Shape& shape) const {
 
 std::vector<Cell> only_in(std::span<const Cell> cells, std::span<const Cell> others) {
   std::vector<Cell> left;
-  std::ranges::set_difference(cells, others, std::back_inserter(left));
+  std::set_difference(cells.begin(), cells.end(), others.begin(), others.end(),
+                      std::back_inserter(left));
   return left;
 }
 

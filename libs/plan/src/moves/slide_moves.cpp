@@ -3,6 +3,8 @@
 #include "moves/slide_moves.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <limits>
 #include <utility>
 
 #include "moves/shape_search.hpp"
@@ -18,6 +20,12 @@ constexpr std::int32_t kMargin = 3;
 
 /// Some 20 bytes a cell.
 constexpr std::int64_t kGridCellsMax = 20'000'000;
+
+/// The most cubes; their prices take some seconds, again and again.
+constexpr std::size_t kCubesMax = 3000;
+
+/// The most cubes for which plans are made in several orders, by geometry alone: a second for 300.
+constexpr std::size_t kVariedMax = 400;
 
 /// The box of both shapes and what is around, as far as the rule allows.
 CellBox box_of(const RobotState& robot, const ShapeSpace& space, const MoveRule& rule) {
@@ -75,7 +83,7 @@ class WalkJudge : public SlideJudge {
       robot_.move({&asked_.from, 1}, {&asked_.to, 1});
     }
     std::size_t done = 0;
-    while (done + 1 < cells.size() && go(cells[done], cells[done + 1], cells.size())) {
+    while (done + 1 < cells.size() && go(cells[done], cells[done + 1])) {
       ++done;
     }
     const bool is_safe = done + 1 == cells.size();
@@ -110,12 +118,10 @@ class WalkJudge : public SlideJudge {
     Cell to;
   };
 
-  /// Makes a move of a walk of so many cells if it is safe.
-  bool go(const Cell& from, const Cell& to, std::size_t cell_count) {
-    constexpr std::size_t kSharingMin = 4;  // Fewer moves are not worth a core of their own.
-    auto judged =
-        judge_.judge_move(robot_, {.from = from, .to = to, .carrier = {}},
-                          found_.empty() ? nullptr : &found_.back(), cell_count > kSharingMin);
+  /// Makes a move if it is safe.
+  bool go(const Cell& from, const Cell& to) {
+    auto judged = judge_.judge_move(robot_, {.from = from, .to = to, .carrier = {}},
+                                    found_.empty() ? nullptr : &found_.back());
     if (!judged) {
       return false;
     }
@@ -138,7 +144,8 @@ class WalkJudge : public SlideJudge {
 
 std::optional<SlideTask> slide_task(const ShapeSpace& space, const MoveRule& rule) {
   const RobotState robot = space.state_of(space.start());
-  if (robot.lattice() != base::kCubic || rule.pivots || space.class_count() != 1) {
+  if (robot.lattice() != base::kCubic || rule.pivots || space.class_count() != 1 ||
+      space.start().size() > kCubesMax) {
     return std::nullopt;
   }
   const CellBox box = box_of(robot, space, rule);
@@ -174,12 +181,59 @@ std::optional<SlideTask> slide_task(const ShapeSpace& space, const MoveRule& rul
   return task;
 }
 
+namespace {
+
+/// Judges nothing, but asks for time.
+class PatientOnly : public SlideJudge {
+ public:
+  explicit PatientOnly(const MoveJudge& judge) : judge_(judge) {}
+
+  std::optional<std::size_t> find_unsafe(std::span<const GridCell>) override {
+    return std::nullopt;
+  }
+
+  void make() override {}
+
+  void take_back() override {}
+
+  bool is_over() override { return judge_.is_over(); }
+
+ private:
+  const MoveJudge& judge_;
+};
+
+/// The direction in which cubes go first in the shortest plan by geometry; up, for many.
+std::size_t best_first_side(SlideTask task, std::uint64_t seed, const MoveJudge& judge) {
+  std::size_t best = SlideTask::kUp;
+  if (task.start.size() > kVariedMax) {
+    return best;
+  }
+  std::size_t least = std::numeric_limits<std::size_t>::max();
+  PatientOnly patient(judge);
+  for (std::size_t side = SlideTask::kUp + 1; side-- > 0;) {
+    task.first_side = side;
+    const SlidePlan plan = plan_slides(task, seed, patient, patient);
+    std::size_t length = 0;
+    for (const SlideWalk& walk : plan.walks) {
+      length += walk.size() - 1;
+    }
+    if (plan.is_found && length < least) {
+      least = length;
+      best = side;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
 std::optional<SlideMoves> find_slides(const ShapeSpace& space, const MoveRule& rule,
                                       std::uint64_t seed, MoveJudge& judge) {
-  const auto task = slide_task(space, rule);
+  auto task = slide_task(space, rule);
   if (!task) {
     return std::nullopt;
   }
+  task->first_side = best_first_side(*task, seed, judge);
   WalkJudge forth(task->grid, space.state_of(space.start()), End::kStart, judge);
   WalkJudge back(task->grid, space.state_of(space.target()), End::kTarget, judge);
   const SlidePlan plan = plan_slides(*task, seed, forth, back);

@@ -40,7 +40,8 @@ SlidePlanner::SlidePlanner(const SlideTask& task, std::uint64_t seed, SlideJudge
       search_(task.grid.size()),
       module_at_(task.grid.size(), -1),
       is_loose_(task.start.size()),
-      offers_(task.start.size()) {
+      offers_(task.start.size()),
+      first_side_(task.first_side) {
   for (const GridCell cell : target_) {
     in_target_[at(cell)] = true;
   }
@@ -125,10 +126,18 @@ bool SlidePlanner::advance() {
   return bridge();
 }
 
+/// How far a cell is in the direction of those that go first.
+int SlidePlanner::height_of(GridCell cell) const {
+  const base::Cell place = grid_.cell(cell);
+  const std::size_t axis = first_side_ / 2;
+  const int along = axis == 0 ? place.x : axis == 1 ? place.y : place.z;
+  return first_side_ % 2 == 0 ? along : -along;
+}
+
 /// The stray that may have the least waste and is not asked yet, of those equal the highest first.
 std::optional<std::size_t> SlidePlanner::next_to_ask() const {
   const auto rank = [&](std::size_t cube) {
-    return std::tuple(offers_[cube].best.waste, -grid_.cell(cubes_[cube]).z,
+    return std::tuple(offers_[cube].best.waste, -height_of(cubes_[cube]),
                       -potential_[at(cubes_[cube])]);
   };
   std::optional<std::size_t> next;

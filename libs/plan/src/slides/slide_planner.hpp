@@ -24,6 +24,11 @@ struct SlideTask {
   std::vector<GridCell> start;   ///< Cubes alike.
   std::vector<GridCell> target;  ///< As many cells.
   std::vector<bool> is_support;  ///< By cell: whether a module there holds the robot.
+  /// Among cubes as good as each other those furthest in this direction go first: a number in
+  /// SlideGrid::sides().
+  std::size_t first_side = kUp;
+
+  static constexpr std::size_t kUp = 4;
 };
 
 /// What a planner asks besides geometry.
@@ -82,6 +87,7 @@ class SlidePlanner {
   bool is_loose_at(GridCell cell) const;
   bool is_beside(GridCell cell, const std::vector<bool>& modules) const;
   std::size_t count_strays() const;
+  int height_of(GridCell cell) const;
   void renew_potential();
   void find_loose();
   bool advance();
@@ -115,6 +121,7 @@ class SlidePlanner {
   std::size_t support_count_ = 0;        ///< Modules that hold the robot.
   std::vector<Offer> offers_;            ///< By cube.
   std::vector<SlideWalk> walks_;
+  std::size_t first_side_;
   std::size_t renewed_ = 0;  ///< So many walks ago the potential was made.
   std::size_t version_ = 1;
   bool is_strict_ = true;   ///< Cells are not filled if a cube that has to leave is shut in.
