@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "picture_support.hpp"
+#include "shapes/module_paint.hpp"
 
 // What may be asked of a picture: from where it is looked at, its size, its colours.
 namespace holdfast::io::picture_test {
@@ -198,6 +199,19 @@ TEST(Figure, reads_views_and_sizes_and_nothing_else) {
   for (const char* const text :
        {"", "x", "800x", "x600", "15", "20001", "800x600x2", "inf", "8e5"}) {
     EXPECT_FALSE(find_figure_size(text)) << text;
+  }
+}
+
+TEST(Figure, shows_of_several_pieces_which_topple) {
+  // The first piece stands, as its mass is over its foot; the second one has three modules beside
+  // that, whose mass is not.
+  model::RobotSpec spec = {
+      .existing = {{0, 0, 0}, {0, 0, 1}, {5, 0, 0}, {5, 0, 1}, {6, 0, 1}, {7, 0, 1}}};
+  spec.may_be_in_pieces = true;
+  const model::Robot robot = make(spec);
+  const auto paints = paint_modules(robot, verdict::assess(robot));
+  for (std::size_t i = 0; i < paints.size(); ++i) {
+    EXPECT_EQ(paints[i].meaning == Meaning::kUnstable, i >= 2) << i;
   }
 }
 

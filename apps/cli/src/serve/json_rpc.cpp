@@ -76,7 +76,7 @@ class JsonRpcProtocol : public Protocol {
         fmt::format("unknown method '{}'; the method 'methods' lists them", io::one_line(method)));
   }
 
-  Reply answer(const Call&, const Finished& finished) override {
+  Reply answer(const Finished& finished) override {
     if (auto failure = find_failure(finished)) {
       return {.error = std::move(failure)};
     }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "holdfast/figure_file.hpp"
 #include "serve/protocol.hpp"
 
 namespace holdfast::cli {
@@ -68,18 +69,15 @@ class McpProtocol : public Protocol {
                          fmt::format("unknown method '{}'", io::one_line(method)));
   }
 
-  Reply answer(const Call& call, const Finished& finished) override {
+  Reply answer(const Finished& finished) override {
     if (const auto failure = find_failure(finished)) {
       return {.result = text_of(refusal(failure->message))};
     }
     Json content = Json::array({{{"type", "text"}, {"text", text_for(finished)}}});
     for (const auto& [name, bytes] : finished.outputs) {
-      content.push_back(
-          name == "svg"
-              ? Json{{"type", "image"}, {"data", base64(bytes)}, {"mimeType", "image/png"}}
-              : Json{{"type", "text"}, {"text", bytes}});
+      content.push_back(name == "svg" ? picture_of(bytes)
+                                      : Json{{"type", "text"}, {"text", bytes}});
     }
-    static_cast<void>(call);
     std::string result = "{\"content\":" + text_of(content) + ",\"isError\":false";
     if (!finished.report.empty()) {
       result += ",\"structuredContent\":" + finished.report;
@@ -102,6 +100,11 @@ class McpProtocol : public Protocol {
   bool answers_cancelled() const override { return false; }
 
  private:
+  static Json picture_of(const std::string& bytes) {
+    const char* const type = bytes.starts_with("\x89PNG") ? "image/png" : "image/svg+xml";
+    return {{"type", "image"}, {"data", base64(bytes)}, {"mimeType", type}};
+  }
+
   static Json refusal(const std::string& message) {
     return {{"content", Json::array({{{"type", "text"}, {"text", message}}})}, {"isError", true}};
   }
@@ -171,14 +174,14 @@ class McpProtocol : public Protocol {
     return {.call = std::move(call).value()};
   }
 
-  /// A picture is a PNG; a report has a length that can be read; a file that a command makes is
-  /// wanted.
+  /// A picture is a PNG where librsvg is there, else an SVG; a report has a length that can be
+  /// read; a file that a command makes is wanted.
   static void complete(const CLI::App& command, Json& arguments) {
     const auto has = [&](const char* option) {
       return command.get_option_no_throw(option) != nullptr;
     };
     if (arguments.value("picture", Json()) == true && has("--svg")) {
-      arguments["svg"] = "png";
+      arguments["svg"] = find_figure_fault("picture.png") ? "svg" : "png";
     }
     if (has("--svg")) {
       arguments.erase("picture");

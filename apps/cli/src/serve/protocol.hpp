@@ -55,7 +55,7 @@ class Protocol {
   virtual Reply take(const std::string& method, const Json& parameters) = 0;
 
   /// The answer of a call that has ended by itself, as a reply without a call.
-  virtual Reply answer(const Call& call, const Finished& finished) = 0;
+  virtual Reply answer(const Finished& finished) = 0;
 
   /// What a request gives to be told of its progress by; none if it does not want to.
   virtual std::optional<Json> progress_token(const Json& id, const Json& parameters) const = 0;

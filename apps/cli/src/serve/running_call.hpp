@@ -49,8 +49,6 @@ class RunningCall {
   /// Ends the process at once if it still runs, and removes its files.
   ~RunningCall();
 
-  const Call& call() const { return call_; }
-
   /// The descriptors to be polled; -1 where there is nothing more to come.
   int output() const { return output_; }
 

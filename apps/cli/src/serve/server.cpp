@@ -260,9 +260,8 @@ void Server::finish_tasks() {
       ++task;
       continue;
     }
-    const auto reply = task->running
-                           ? protocol_->answer(task->running->call(), task->running->finish())
-                           : Reply::failed(RpcCode::kCancelled, "cancelled");
+    const auto reply = task->running ? protocol_->answer(task->running->finish())
+                                     : Reply::failed(RpcCode::kCancelled, "cancelled");
     if (!task->is_cancelled || protocol_->answers_cancelled()) {
       answer(task->id, task->batch, reply);
     }

@@ -50,6 +50,22 @@ Meaning meaning_of(const ModulePaint& paint, bool is_broken) {
   return std::isnan(paint.worst_ratio) ? Meaning::kUnknown : Meaning::kLoad;
 }
 
+/// Whether each module topples: with its robot, or with its piece of one in several.
+std::vector<bool> find_toppling(const model::Robot& robot, const verdict::Assessment& assessment) {
+  const bool is_whole = assessment.pieces.empty();
+  std::vector<bool> topples(robot.modules().size(),
+                            is_whole && assessment.verdict == verdict::Verdict::kUnstable);
+  for (const model::RobotPiece& piece : robot.pieces()) {
+    const auto answer = std::ranges::find(assessment.pieces, piece.robot.modules().front().cell,
+                                          &verdict::PieceAnswer::first);
+    for (const std::int32_t module : piece.modules) {
+      topples[static_cast<std::size_t>(module)] =
+          answer != assessment.pieces.end() && answer->verdict == verdict::Verdict::kUnstable;
+    }
+  }
+  return topples;
+}
+
 }  // namespace
 
 bool has_loads(const model::Robot& robot, const verdict::Assessment& assessment) {
@@ -73,9 +89,10 @@ std::vector<ModulePaint> paint_modules(const model::Robot& robot,
       is_broken[static_cast<std::size_t>(robot.connections()[i].b)] = true;
     }
   }
+  const std::vector<bool> topples = find_toppling(robot, assessment);
   for (std::size_t i = 0; i < paints.size(); ++i) {
     ModulePaint& paint = paints[i];
-    if (assessment.verdict == verdict::Verdict::kUnstable) {
+    if (topples[i]) {
       paint.meaning = Meaning::kUnstable;
     } else if (robot.modules()[i].support == model::Support::kFixed) {
       paint.meaning = Meaning::kFixed;
