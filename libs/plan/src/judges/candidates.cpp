@@ -166,7 +166,7 @@ class CandidateSearch::Batch {
       return kNone;
     }
     const auto last = ratios.begin() + static_cast<std::ptrdiff_t>(count) - 1;
-    std::ranges::nth_element(ratios, last);
+    std::nth_element(ratios.begin(), last, ratios.end());
     return *last;
   }
 

@@ -38,7 +38,7 @@ class Places {
 
   std::size_t of_facet(std::int32_t module, base::Direction direction) const {
     const auto facets = robot_.facets();
-    const auto found = std::ranges::find_if(
+    const auto found = std::find_if(
         std::ranges::lower_bound(facets, module, {}, &model::Facet::module), facets.end(),
         [&](const model::Facet& facet) { return facet.direction == direction; });
     return static_cast<std::size_t>(found - facets.begin());
