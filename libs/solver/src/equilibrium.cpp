@@ -261,10 +261,11 @@ std::vector<Equilibrium> EquilibriumSolver::let_slip(const Equilibrium& settled,
   std::vector<Equilibrium> found;
   const auto goes_on = [&] {
     auto next = search.run() == Outcome::kSettled ? slid(*system, search, settled) : std::nullopt;
-    if (next) {
-      found.push_back(*std::move(next));
+    if (!next) {
+      return false;
     }
-    return next.has_value();
+    found.push_back(*std::move(next));
+    return true;
   };
   if (!goes_on()) {
     return {};

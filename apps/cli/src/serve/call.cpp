@@ -214,7 +214,7 @@ class CallMaker {
       call_.arguments.push_back("--json=" + call_.report);
     }
     std::ranges::move(options_, std::back_inserter(call_.arguments));
-    call_.arguments.push_back("--");
+    call_.arguments.emplace_back("--");
     std::ranges::move(positional_, std::back_inserter(call_.arguments));
   }
 

@@ -228,7 +228,7 @@ class CandidateSearch::Batch {
       judge->judge(cells, found);
       for (std::size_t k = 0; k < some.size(); ++k) {
         if (found[k]) {
-          judged_[some[k]] = std::move(found[k]);
+          judged_[some[k]] = found[k];
         }
       }
       tell();
