@@ -90,15 +90,16 @@ base::Result<std::vector<Trial>> KeptStructures::try_cells(const std::string& na
     return base::bad_input(fmt::format("no structure '{}' is loaded", io::one_line(name)));
   }
   Kept& kept = found->second;
-  const auto robot = model::Robot::create(kept.spec);
-  if (!robot) {
-    return robot.error();
-  }
-  if (robot.value().modules().size() > kTriedModulesMax) {
-    return base::bad_input(fmt::format("try takes at most {} modules, found {}; next takes any",
-                                       kTriedModulesMax, robot.value().modules().size()));
-  }
   if (!kept.trials) {
+    const auto robot = model::Robot::create(kept.spec);
+    if (!robot) {
+      return robot.error();
+    }
+    const std::size_t count = robot.value().modules().size();
+    if (count > kTriedModulesMax) {
+      return base::bad_input(fmt::format("try takes at most {} modules, found {}; next takes any",
+                                         kTriedModulesMax, count));
+    }
     CheckOptions options;
     options.thread_count = 1;
     kept.trials = std::make_unique<CellTrials>(kept.spec, Role::kPlanned, options);
