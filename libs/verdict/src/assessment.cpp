@@ -137,9 +137,7 @@ bool stands_by_paper(const Assessment& assessment) {
 }
 
 bool has_pulling_facets(const Situation& here, const Equilibrium& equilibrium) {
-  const bool is_any_not_stuck = std::ranges::any_of(
-      equilibrium.contact, [&](const auto& state) { return state != mechanics::kStuck; });
-  return !here.is_on_flat_floor && host::any(here.robot.ranks(), is_any_not_stuck);
+  return !here.is_on_flat_floor && host::any(here.robot.ranks(), !are_all_stuck(equilibrium));
 }
 
 /// The paper's law's further solutions, and the exact law's answer where there are any, or where
@@ -153,11 +151,6 @@ void look_beside(const Situation& here, solver::EquilibriumSolver& solver,
     const double gamma = weak_springs(solver, assessment.is_stable).front();
     compare_solutions(here, solver, gamma, options, answers, assessment);
   }
-}
-
-bool are_all_stuck(const Equilibrium& equilibrium) {
-  return std::ranges::all_of(equilibrium.contact,
-                             [](const auto& state) { return state == mechanics::kStuck; });
 }
 
 /// Whether slips of feet may decide in place of the equilibrium without: on a level floor, where

@@ -163,9 +163,8 @@ std::optional<solver::Equilibrium> exact_equilibrium(const Assessment& assessmen
                                                      solver::EquilibriumSolver& solver,
                                                      double gamma) {
   const solver::Equilibrium& found = assessment.equilibrium;
-  const bool is_all_stuck = std::ranges::all_of(
-      found.contact, [](const auto& state) { return state == mechanics::kStuck; });
-  if (is_all_stuck || !found.slip.empty() || found.law == mechanics::ContactLaw::kUnilateral ||
+  if (are_all_stuck(found) || !found.slip.empty() ||
+      found.law == mechanics::ContactLaw::kUnilateral ||
       solver.prepare(mechanics::ContactLaw::kUnilateral) == solver::Method::kMultigrid) {
     return std::nullopt;
   }
