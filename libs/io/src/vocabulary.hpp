@@ -53,6 +53,12 @@ inline constexpr const char* kExtensionElement = "extension";
 /// up.
 inline constexpr const char* kGridSize = "gridSize";
 
+/// The attribute of <holdfast>, and its only value, that says that targets list planned modules
+/// though they look like a shape to reach. A structure with such planned modules is no robot, but
+/// it is read as it was written.
+inline constexpr const char* kTargets = "targets";
+inline constexpr const char* kPlannedTargets = "planned";
+
 /// The attribute of <holdfast> that says what a writer has added to every cell and to the support
 /// level.
 inline constexpr const char* kShift = "shift";
@@ -224,8 +230,8 @@ inline const std::vector<std::string_view>& parameter_names() {
 /// All attributes of <holdfast>.
 inline const std::vector<std::string_view>& own_element_names() {
   static const std::vector<std::string_view> names = [] {
-    std::vector<std::string_view> list = {"name",    "description", "robot",
-                                          "lattice", "computed",    kShift};
+    std::vector<std::string_view> list = {"name",     "description", "robot", "lattice",
+                                          "computed", kTargets,      kShift};
     for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
       if (parameter.visiblesim == nullptr) {
         list.emplace_back(parameter.key);

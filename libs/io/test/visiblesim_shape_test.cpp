@@ -251,6 +251,22 @@ TEST(VisibleSimGoal, is_no_list_of_planned_modules_with_a_slip) {
       1U);
 }
 
+// Found by the fuzzer: a planned cell that a module has is a mistake, which a conversion must not
+// turn into a shape to reach.
+TEST(VisibleSimGoal, is_not_made_of_planned_modules_by_a_conversion) {
+  for (const char* planned :
+       {R"("planned": [[0,0,0]])", R"("planned": [[0,0,-1],[1,0,0]], "later_steps": [[[2,0,0]]])",
+        R"("planned": [], "later_steps": [[[0,0,0]]])"}) {
+    const Document document =
+        document_test::accepted(read_json(document_test::json("\"modules\": [[0,0,0],[1,0,0]], " +
+                                                              std::string(planned))))
+            .document;
+    const ReadDocument again = document_test::accepted(read_visiblesim(write_visiblesim(document)));
+    EXPECT_EQ(again.document, document) << planned;
+    EXPECT_TRUE(again.document.targets.empty()) << planned;
+  }
+}
+
 TEST(VisibleSimGoal, in_json_overlaps_the_modules_as_well) {
   const auto json = [](std::string_view cell, std::string_view more) {
     return document_test::json(

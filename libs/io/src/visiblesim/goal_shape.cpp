@@ -46,6 +46,12 @@ bool is_goal_shape(const std::vector<ModuleEntry>& modules, const Step& cells) {
                              [&](const PlannedEntry& entry) { return taken.contains(entry.cell); });
 }
 
+const Step* find_goal_shape(const std::vector<ModuleEntry>& modules,
+                            const std::vector<Step>& steps) {
+  const auto first = std::ranges::find_if(steps, [](const Step& step) { return !step.empty(); });
+  return first == steps.end() || !is_goal_shape(modules, *first) ? nullptr : &*first;
+}
+
 bool is_goal(const Element& target) {
   const std::string* const format = find_attribute(target.attributes, "format");
   return target.name == "target" && format != nullptr && *format == "grid";

@@ -122,17 +122,17 @@ void read_targets(XmlReading& reading, const pugi::xml_node& list) {
 }
 
 /// Takes targets that overlap the modules for what they are: shapes to reach.
-void take_goal_shapes(XmlReading& reading, const pugi::xml_node& list) {
+void take_goal_shapes(XmlReading& reading, const pugi::xml_node& list, const pugi::xml_node& own) {
   Document& document = reading.document;
-  const auto first = std::ranges::find_if(document.steps, [](const Step& s) { return !s.empty(); });
-  if (reading.has_failed() || first == document.steps.end() ||
-      !is_goal_shape(document.modules, *first)) {
+  const Step* const shape = find_goal_shape(document.modules, document.steps);
+  if (reading.has_failed() || shape == nullptr ||
+      own.attribute(kTargets).value() == std::string_view(kPlannedTargets)) {
     return;
   }
   reading.warn(fmt::format("the target is taken for a shape to reach, as it overlaps the modules: "
                            "its {} cells are not attached, the {} modules are judged as they are; "
                            "holdfast move takes them there",
-                           first->size(), document.modules.size()),
+                           shape->size(), document.modules.size()),
                [&] { return reading.line(list); });
   for (const Step& step : document.steps) {
     if (!step.empty()) {
@@ -140,7 +140,7 @@ void take_goal_shapes(XmlReading& reading, const pugi::xml_node& list) {
     }
   }
   document.steps.clear();
-  std::erase_if(document.extension.own, [](const OwnParameters& own) { return own.step > 0; });
+  std::erase_if(document.extension.own, [](const OwnParameters& entry) { return entry.step > 0; });
 }
 
 void read_scenery(XmlReading& reading, const pugi::xml_node& world) {
@@ -217,7 +217,7 @@ void read_world(XmlReading& reading, const pugi::xml_node& world, const ReadOpti
   read_targets(reading, targets);
   read_scenery(reading, world);
   read_own_element(reading, own);
-  take_goal_shapes(reading, targets);
+  take_goal_shapes(reading, targets, own);
   if (own.attribute("computed").value() == std::string_view(kGridSize)) {
     std::erase_if(document.world, [](const auto& entry) { return entry.first == kGridSize; });
   }

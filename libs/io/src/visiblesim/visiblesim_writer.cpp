@@ -260,6 +260,9 @@ void add_own_element(pugi::xml_node world, const Document& document, const base:
   if (is_grid_computed) {
     add(node, "computed", kGridSize);
   }
+  if (find_goal_shape(document.modules, document.steps) != nullptr) {
+    add(node, kTargets, kPlannedTargets);
+  }
   if (shift != base::Cell{}) {
     add(node, kShift, triple(shift));
   }

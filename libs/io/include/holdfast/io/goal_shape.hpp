@@ -16,6 +16,11 @@ namespace holdfast::io {
 /// are no slip in a list of planned modules.
 bool is_goal_shape(const std::vector<ModuleEntry>& modules, const Step& cells);
 
+/// The first of the steps that has cells, where these are a shape to reach; null else. A file whose
+/// targets list these steps is taken to say so for all of them.
+const Step* find_goal_shape(const std::vector<ModuleEntry>& modules,
+                            const std::vector<Step>& steps);
+
 /// Whether a target of a document is one of these shapes.
 bool is_goal(const Element& target);
 
