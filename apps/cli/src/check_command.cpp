@@ -188,7 +188,7 @@ class CheckRun {
     }
     if (options_.is_cascade_wanted) {
       more.cascade = find_cascade(structure, how, counting(file, "module"));
-      more.text += cascade_text(structure, *more.cascade);
+      more.text += cascade_text(structure.robot, *more.cascade);
       more.members.emplace_back(
           [cascade = *more.cascade](io::JsonStream& json) { write_cascade_member(json, cascade); });
     }

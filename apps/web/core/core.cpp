@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "falling_reply.hpp"
 #include "holdfast/distributed.hpp"
 #include "holdfast/losses.hpp"
 #include "holdfast/order.hpp"
@@ -31,12 +32,6 @@ namespace holdfast::web {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-struct Reply {
-  std::string text;
-  std::vector<std::int32_t> integers;
-  std::vector<double> numbers;
-};
 
 // One program, one caller, one call at a time.
 std::vector<std::uint8_t> input;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
@@ -342,6 +337,19 @@ Reply lose_one_request(const Request& request) {
   json.member("text", lose_one_text(report));
   json.end_object();
   return {.text = text, .integers = {}, .numbers = {}};
+}
+
+/// What follows the break, and how the pieces fall: falling_reply().
+Reply cascade_request(const Request& request) {
+  const auto spec = spec_of(request);
+  const auto robot = robot_of(request);
+  if (!robot) {
+    return failure(robot.error());
+  }
+  const auto cascade =
+      plan::find_cascade(spec.value(), {.equilibrium = {.thread_count = 1}, .progress = {}});
+  return cascade ? falling_reply(spec.value(), robot.value(), cascade.value())
+                 : failure(cascade.error());
 }
 
 /// Why the worst connection carries what it carries, and single changes with which the robot is
@@ -730,6 +738,10 @@ HOLDFAST_EXPORT(holdfast_reliability)()->void {
 
 HOLDFAST_EXPORT(holdfast_lose_one)()->void {
   web::reply = web::lose_one_request(web::read_request(web::input));
+}
+
+HOLDFAST_EXPORT(holdfast_cascade)()->void {
+  web::reply = web::cascade_request(web::read_request(web::input));
 }
 
 HOLDFAST_EXPORT(holdfast_try_places)()->void {

@@ -10,6 +10,7 @@ import { App } from './ui/app';
 import { showFaceLegend, showLegend } from './ui/answer_panel';
 import { byId, icon, make, say, tell } from './ui/dom';
 import { listenToFiles, reportOf, take, write } from './ui/files';
+import { BreakingPanel } from './ui/breaking';
 import { Collapse } from './ui/collapse';
 import { ConnectionTable } from './ui/connections';
 import { DeformedPanel } from './ui/deformed';
@@ -142,7 +143,6 @@ function makePanel(app: App, keeper: Keeper): void {
     const factor = app.setExaggeration(Number(slider.value) / 100);
     byId('exaggeration-value').textContent = `${factor === 0 || factor >= 10 ? factor.toFixed(0) : factor.toFixed(1)} ×`;
   };
-  byId('topple').onclick = () => app.toggleTopple();
   byId('stop').onclick = () => app.stop();
   const faces = byId('faces');
   faces.onclick = () => {
@@ -223,6 +223,7 @@ function begin(): void {
   new Sure(app);
   new LossPanel(app);
   new DeformedPanel(app);
+  new BreakingPanel(app);
   const actions = makeActions(app, player, timeline);
   listenToPointer(app);
   listenToKeys(app, actions);

@@ -313,6 +313,64 @@ test('the deformed shape is the program’s, true to scale, at every factor of t
   assert.deepEqual(page.faults, []);
 });
 
+test('what breaks falls as the program says, round by round, and is put together again', async () => {
+  const page = await openPage(browser, { viewport: DESKTOP, reducedMotion: 'no-preference' });
+  await openExample(page, 'arm_breaks_b');
+  assert.deepEqual(await page.evaluate(() => globalThis.holdfast.app.isToppled), false, 'of itself nothing breaks');
+  assert.equal(await page.innerText('#topple'), 'Let it break');
+  await page.click('#topple');
+  await page.waitForFunction(() => globalThis.holdfast.app.isToppled);
+  const { cascade } = ask(scenario('arm_breaks_b'), '--cascade');
+  const shown = await page.evaluate(() => {
+    const { pieces } = globalThis.holdfast.app.toppling;
+    return { cascade: pieces.breaking.cascade, fallen: [...pieces.fallen(100)].map((slot) => globalThis.holdfast.bench.robot.cellAt(slot)) };
+  });
+  assert.deepEqual(shown.cascade, cascade);
+  assert.deepEqual(new Set(shown.fallen.map(String)), new Set(cascade.rounds.flatMap(({ fallen }) => fallen.map(String))));
+  assert.match(await page.innerText('#breaking-text'), /breaks in 1 round; 6 of 13 modules fall/);
+  await page.waitForFunction(() => globalThis.holdfast.app.toppling.playing.seconds >= globalThis.holdfast.app.toppling.pieces.seconds);
+  // In the picture: what stands has not moved, what fell lies above the floor and lower than it was.
+  const ways = await page.evaluate(() => {
+    const { app: { view }, bench: { robot } } = globalThis.holdfast;
+    return Array.from({ length: robot.count }, (_, slot) => {
+      const at = view.instances[slot];
+      return { cell: robot.cellAt(slot), z: robot.placeAt(slot)[2], way: [...view.modules.motions.slice(3 * at, 3 * at + 3)], factor: view.exaggeration };
+    });
+  });
+  const standing = new Set(cascade.standing.map(String));
+  for (const { cell, z, way, factor } of ways) {
+    assert.equal(factor, 1);
+    if (standing.has(String(cell))) {
+      assert.deepEqual(way, [0, 0, 0], String(cell));
+    } else {
+      assert.ok(way[2] < -0.2 && z + way[2] > -0.02, `${cell}: ${way}`);
+    }
+  }
+  // A click at the robot is no change of it, and stands it up.
+  await page.click('#fall-again');
+  await page.keyboard.press('t');
+  assert.deepEqual(await page.evaluate(() => [globalThis.holdfast.app.isToppled, globalThis.holdfast.app.view.exaggeration, globalThis.holdfast.app.view.paintOver === undefined]), [false, 0, true]);
+  assert.equal(await page.innerText('#topple'), 'Let it break');
+  assert.deepEqual(page.faults, []);
+});
+
+test('a robot that is changed while it falls is shown as it is', async () => {
+  const page = await openPage(browser, { viewport: DESKTOP, reducedMotion: 'no-preference' });
+  await openExample(page, 'arm_breaks_b');
+  await page.click('#topple');
+  await page.waitForFunction(() => globalThis.holdfast.app.isToppled);
+  await page.evaluate(() => {
+    const { bench } = globalThis.holdfast;
+    bench.remove([bench.robot.cellAt(bench.robot.count - 1)]);
+  });
+  await settled(page);
+  assert.deepEqual(await page.evaluate(() => [globalThis.holdfast.app.isToppled, globalThis.holdfast.app.view.exaggeration]), [false, 0]);
+  await page.click('#new');
+  await settled(page);
+  assert.equal(await page.isVisible('#breaking'), false);
+  assert.deepEqual(page.faults, []);
+});
+
 test('one thing is shown at a time: a stage ends the deformed shape', async () => {
   const page = await openPage(browser, { viewport: DESKTOP });
   await page.click('#judge-steps');

@@ -6,6 +6,7 @@ import type { RobotData } from '../model/edited_robot';
 import {
   CoreError,
   type Answer,
+  type Breaking,
   type DeformedAnswer,
   type FoundOrder,
   type JudgedSteps,
@@ -73,6 +74,10 @@ export class CoreClient {
 
   loseOne(robot: RobotData, secondsMax: number): Promise<Losses> {
     return this.call('loseOne', [robot, secondsMax]);
+  }
+
+  cascade(robot: RobotData): Promise<Breaking> {
+    return this.call('cascade', [robot]);
   }
 
   tryPlaces(robot: RobotData, places: Int32Array, role: Role): Promise<Trial[]> {

@@ -176,6 +176,25 @@ export interface Losses {
   text: string;
 }
 
+/** What follows the break, and how the pieces fall, which is an illustration. */
+export interface Breaking {
+  cascade: {
+    outcome: 'holds' | 'stands' | 'falls' | 'undecided';
+    rounds: { broken: { a: Cell; b: Cell; load_ratio: number }[]; fallen: Cell[] }[];
+    standing: Cell[];
+  };
+  text: string;
+  /** When each round begins. */
+  round_s: number[];
+  frame_s: number;
+  /** The body of each module, -1 if it stands. */
+  bodies: Int32Array;
+  /** Centres of mass of the bodies before they fall, mm. */
+  centres: Float64Array;
+  /** For each frame and body: how far it has moved, mm, and the quaternion (w, x, y, z) of its turn. */
+  poses: Float64Array;
+}
+
 /** An answer of the deformed shape; `factor`: of the loads that were asked for, those that it rests on. */
 export type DeformedAnswer = Answer & { factor: number | null };
 

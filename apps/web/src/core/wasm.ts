@@ -8,6 +8,7 @@ import {
   FACET_INTEGERS,
   LOAD_FIELDS,
   type Answer,
+  type Breaking,
   type DeformedAnswer,
   type Failure,
   type FoundOrder,
@@ -49,6 +50,7 @@ interface Exports {
   holdfast_deformed(): void;
   holdfast_reliability(): void;
   holdfast_lose_one(): void;
+  holdfast_cascade(): void;
   holdfast_try_places(): void;
   holdfast_write(): void;
   holdfast_simulate(): void;
@@ -71,7 +73,7 @@ interface Reply {
 
 type Call =
   | 'vocabulary' | 'open' | 'check' | 'limit' | 'try_places' | 'write' | 'simulate' | 'judge_steps' | 'find_order'
-  | 'stage' | 'why' | 'deformed' | 'reliability' | 'lose_one';
+  | 'stage' | 'why' | 'deformed' | 'reliability' | 'lose_one' | 'cascade';
 
 export class Core {
   private constructor(private readonly exports: Exports) {}
@@ -155,6 +157,14 @@ export class Core {
   /** What follows from the loss of each single part. Throws CoreError. */
   loseOne(robot: RobotData, secondsMax: number): Losses {
     return JSON.parse(this.call('lose_one', request(robot, [secondsMax])).text) as Losses;
+  }
+
+  /** What follows the break. Throws CoreError. */
+  cascade(robot: RobotData): Breaking {
+    const { text, integers, numbers } = this.call('cascade', request(robot, []));
+    const head = JSON.parse(text) as Omit<Breaking, 'bodies' | 'centres' | 'poses'>;
+    const centreSize = 3 * (integers.reduce((most, body) => Math.max(most, body), -1) + 1);
+    return { ...head, bodies: integers, centres: numbers.slice(0, centreSize), poses: numbers.slice(centreSize) };
   }
 
   /** The limit load; null if it is not found in time. Throws CoreError. */

@@ -9,7 +9,7 @@ export interface WorkerCall {
   id: number;
   name:
     | 'open' | 'check' | 'limit' | 'tryPlaces' | 'write' | 'simulate' | 'judgeSteps' | 'findOrder' | 'stage' | 'why'
-    | 'deformed' | 'reliability' | 'loseOne';
+    | 'deformed' | 'reliability' | 'loseOne' | 'cascade';
   values: unknown[];
 }
 

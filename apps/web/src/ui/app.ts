@@ -17,11 +17,11 @@ import { RobotView, type Losses } from '../view/robot_view';
 import { Stage } from '../view/stage';
 import { connectionText, showDetails, showFaceLegend, showFacetLegend, showFinding, showLegend } from './answer_panel';
 import { showChip, trialText } from './chip';
-import { byId, clearErrors, make, say } from './dom';
+import { byId, clearErrors, make, say, tell } from './dom';
 import { placeLabels } from './labels';
 import { followTheme, setTheme } from './theme';
 import { Tip } from './tip';
-import { Toppling, topples } from './toppling';
+import { Toppling } from './toppling';
 import { WhereNext } from './where_next';
 
 /** The largest displacement is drawn as up to so many cells. */
@@ -79,9 +79,9 @@ export class App {
   private readonly obstacles = new ObstacleView();
   private readonly facets = new FacetView();
   private readonly loads = new LoadView();
-  private readonly toppling = new Toppling(this.stage, this.ground, () => {
-    byId('topple').textContent = this.isToppled ? 'Stand it up' : 'Let it topple';
-  });
+  readonly toppling = new Toppling(this.stage, this.view, this.ground, () => this.fallListeners.forEach((tell) => tell()));
+  /** Called when a fall is asked for, begins or ends. */
+  readonly fallListeners: (() => void)[] = [];
   private readonly tip: Tip;
   private readonly judge = new Judge((finding) => this.found(finding));
   private lateShow = 0;
@@ -139,7 +139,6 @@ export class App {
       this.offer();
       this.view.point([]);
       this.whereNext.preview([]);
-      byId('topple').hidden = exhibit !== undefined || !this.canTopple;
       this.showRobot();
       this.showPointed();
       if (isFirst && exhibit?.bounds && !this.stage.holds(exhibit.bounds.low, exhibit.bounds.high)) {
@@ -300,16 +299,23 @@ export class App {
   }
 
   startTopple(): void {
-    if (this.finding?.answer && !this.exhibit) {
-      this.toppling.start(this.bench.robot, this.finding.answer);
+    if (this.fall) {
+      this.straighten();
+      this.toppling.start(this.bench.robot, this.finding!).catch((error: unknown) => {
+        tell(error instanceof Error ? error.message : String(error), true);
+      });
     }
   }
 
   /** Upright again; false if it was. */
   stopTopple(): boolean {
-    const { isToppled } = this;
-    this.toppling.stop();
-    return isToppled;
+    const { isToppled, toppling } = this;
+    const isFalling = isToppled || toppling.isAsking;
+    toppling.stop();
+    if (isToppled) {
+      this.view.paint();
+    }
+    return isFalling;
   }
 
   /** It falls or lies: nothing is where it is built. */
@@ -373,8 +379,7 @@ export class App {
     const { wasUnstable } = this;
     const answer = this.finding?.answer;
     this.wasUnstable = answer?.verdict === 'unstable';
-    byId('topple').hidden = !this.canTopple || this.exhibit !== undefined;
-    if (this.canTopple && !wasUnstable && !matchMedia('(prefers-reduced-motion: reduce)').matches) {
+    if (this.fall === 'topples' && !wasUnstable && !matchMedia('(prefers-reduced-motion: reduce)').matches) {
       this.startTopple();
     }
   }
@@ -384,14 +389,17 @@ export class App {
     return this.exhibit ? this.exhibit.finding : this.finding;
   }
 
-  private get canTopple(): boolean {
-    return this.finding?.answer !== undefined && topples(this.finding.answer);
+  /** How the robot that is built comes down, if it does and nothing else is shown. */
+  get fall(): 'topples' | 'breaks' | undefined {
+    const answer = this.exhibit ? undefined : this.finding?.answer;
+    const breaks = answer?.verdict === 'overload' && !this.finding?.isFirstLook;
+    return answer?.verdict === 'unstable' ? 'topples' : breaks ? 'breaks' : undefined;
   }
 
   private showRobot(): void {
     const { robot, shown: finding } = this;
     const judged = finding?.answer && { answer: finding.answer, slots: finding.slots };
-    this.view.show(robot, judged);
+    this.view.show(robot, judged, this.isToppled);
     showFinding(robot, finding);
     this.showTrial();
     this.shownListeners.forEach((tell) => tell());

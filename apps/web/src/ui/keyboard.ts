@@ -18,7 +18,7 @@ export const KEYS: readonly [keys: string, text: string][] = [
   ['[  ]', 'less, more exaggeration'],
   ['Q  E  +  −', 'turn left, turn right, nearer, further'],
   ['H  W', 'see all, see the worst connection'],
-  ['T', 'let it topple, if it does; stand it up'],
+  ['T', 'let it topple or break, if it does; put it together again'],
   ['K  ,  .', 'the robot’s own computation: play or pause, step back, step on'],
   ['S  U  R', 'steps: play or pause, to the first unsafe stage, record'],
   ['Esc', 'put the cursor away, let pinned numbers go'],

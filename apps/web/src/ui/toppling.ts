@@ -1,22 +1,31 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-import { Vector3 } from 'three';
-import type { Answer } from '../core/types';
+import type { Finding } from '../core/judge';
+import { Question } from '../core/question';
+import { MOTION_FIELDS } from '../core/types';
 import { widen, type Box, type EditedRobot } from '../model/edited_robot';
+import { UNSTABLE } from '../view/colours';
 import type { Ground } from '../view/ground';
+import { FallingPieces } from '../view/pieces';
+import type { RobotView } from '../view/robot_view';
 import type { Stage } from '../view/stage';
-import { Fall } from '../view/fall';
-import { Topple, type Motion } from '../view/topple';
 
-/** Then every fall is over. */
-const LONG_SECONDS = 100;
+/** What breaks is looked at before it falls. */
+const LOOK_SECONDS = 0.7;
+const SLOWLY = 0.2;
+/** Where no floor ends a fall, pieces leave the picture so many cells below the robot. */
+const DEPTH_CELLS = 6;
 
-/** Lets the robot fall, over its edge or as its rigid body begins to; it lies until it is stood up. */
+/** Lets a robot topple, or break and its pieces fall; what has fallen lies until it is stood up. */
 export class Toppling {
-  private running?: { motion: Motion; begun: number };
+  private readonly question = new Question();
+  private playing?: { pieces: FallingPieces; seconds: number; last: number };
+  private fallenCount = 0;
+  isSlow = false;
 
   constructor(
     private readonly stage: Stage,
+    private readonly view: RobotView,
     private readonly ground: Ground,
     private readonly tell: () => void,
   ) {
@@ -25,61 +34,97 @@ export class Toppling {
 
   /** It falls or lies. */
   get isToppled(): boolean {
-    return this.running !== undefined;
+    return this.playing !== undefined;
   }
 
-  start(robot: EditedRobot, answer: Answer): void {
-    if (topples(answer)) {
-      this.running = { motion: motionOf(robot, answer), begun: performance.now() };
-      this.keepInPicture(robot, this.running.motion);
-      this.stage.draw();
+  get isAsking(): boolean {
+    return this.question.isBusy;
+  }
+
+  get pieces(): FallingPieces | undefined {
+    return this.playing?.pieces;
+  }
+
+  /** Asks the core what falls, and shows it, unless it is stopped before. Throws CoreError. */
+  async start(robot: EditedRobot, finding: Finding): Promise<void> {
+    const { data, slots } = robot.toData();
+    const asked = this.question.ask((core) => core.cascade(data));
+    this.tell();
+    const breaking = await asked.finally(() => this.tell());
+    if (breaking) {
+      const pieces = new FallingPieces(robot, slots, breaking);
+      this.playing = { pieces, seconds: 0, last: 0 };
+      this.view.show(robot, { answer: finding.answer!, slots: finding.slots }, true);
+      this.view.exaggeration = 1;
+      this.keepInPicture(robot, slots, pieces);
+      this.play();
       this.tell();
     }
   }
 
+  /** From the beginning; where nothing may move the end alone. */
+  play(): void {
+    const { playing } = this;
+    if (playing) {
+      const isStill = matchMedia('(prefers-reduced-motion: reduce)').matches;
+      const { breaking, seconds } = playing.pieces;
+      const hasBroken = breaking.cascade.rounds[0]?.broken.length > 0;
+      playing.seconds = isStill ? seconds : hasBroken ? -LOOK_SECONDS : 0;
+      playing.last = performance.now();
+      this.draw();
+    }
+  }
+
+  /** Upright again; colours follow with the view's paint(). */
+  stop(): void {
+    this.question.cancel();
+    if (this.playing) {
+      this.playing = undefined;
+      this.fallenCount = 0;
+      this.view.paintOver = undefined;
+      this.view.exaggeration = 0;
+      this.view.pose(undefined);
+      this.ground.follow(undefined);
+      this.stage.draw();
+    }
+    this.tell();
+  }
+
   /** The camera steps back where the robot would leave the picture. */
-  private keepInPicture(robot: EditedRobot, motion: Motion): void {
+  private keepInPicture(robot: EditedRobot, slots: Int32Array, pieces: FallingPieces): void {
     const { low, high } = robot.bounds()!;
     const box: Box = { low: [...low], high: [...high] };
-    const end = motion.matrix(LONG_SECONDS);
-    for (let corner = 0; corner < 8; ++corner) {
-      const at = low.map((value, k) => ((corner >> k) & 1 ? high[k] : value));
-      widen(box, new Vector3().fromArray(at).applyMatrix4(end).toArray());
+    const motions = pieces.at(pieces.seconds);
+    for (const slot of slots) {
+      const [x, y, z] = robot.placeAt(slot).map((value, k) => value + motions[MOTION_FIELDS * slot + k] / robot.pitchMm);
+      widen(box, [x, y, Math.max(z, low[2] - DEPTH_CELLS)]);
     }
     if (!this.stage.holds(box.low, box.high)) {
       this.stage.fit(box.low, box.high, true);
     }
   }
 
-  /** Upright again. */
-  stop(): void {
-    this.running = undefined;
-    this.tell();
-    this.stage.robot.matrixAutoUpdate = true;
-    this.stage.robot.updateMatrix();
-    this.ground.follow(undefined);
-    this.stage.draw();
-  }
-
   private move(now: number): boolean {
-    if (!this.running) {
+    const { playing } = this;
+    if (!playing || playing.seconds >= playing.pieces.seconds) {
       return false;
     }
-    const { motion, begun } = this.running;
-    const seconds = (now - begun) / 1000;
-    this.stage.robot.matrixAutoUpdate = false;
-    this.stage.robot.matrix.copy(motion.matrix(Math.max(seconds, 0)));
-    this.ground.follow(this.stage.robot.matrix);
-    return !motion.isOver(seconds);
+    playing.seconds += (Math.max(now - playing.last, 0) / 1000) * (this.isSlow ? SLOWLY : 1);
+    playing.last = now;
+    this.draw();
+    return true;
   }
-}
 
-/** It is known how it falls. */
-export const topples = ({ verdict, stability }: Answer) =>
-  verdict === 'unstable' && (stability.edge !== null || stability.rigid.motion !== null);
-
-function motionOf(robot: EditedRobot, { stability }: Answer): Motion {
-  const { edge } = stability;
-  const scaled = edge?.map(([x, y]) => [x / robot.pitchMm, y / robot.pitchMm]) as typeof edge;
-  return scaled ? new Topple(robot, scaled) : new Fall(robot, stability);
+  private draw(): void {
+    const { pieces, seconds } = this.playing!;
+    const { view } = this;
+    view.pose(pieces.at(seconds));
+    this.ground.follow(pieces.whole(seconds));
+    const fallen = pieces.fallen(seconds);
+    if (fallen.size !== this.fallenCount) {
+      this.fallenCount = fallen.size;
+      view.paintOver = fallen.size > 0 ? (slot) => (fallen.has(slot) ? UNSTABLE : undefined) : undefined;
+      view.paint();
+    }
+  }
 }

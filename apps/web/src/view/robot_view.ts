@@ -120,15 +120,15 @@ export class RobotView {
     this.ghosts.update(0);
   }
 
-  /** Another shape; colours follow with paint(). */
-  show(robot: EditedRobot, judged: Judged | undefined): void {
+  /** Another shape; colours follow with paint(). `isApart`: modules that others hide may come to be seen. */
+  show(robot: EditedRobot, judged: Judged | undefined, isApart = false): void {
     this.setLattice(robot.lattice);
     this.robot = robot;
     this.judged = judged;
     this.loads = judged?.answer.has_loads ? moduleLoads(judged) : undefined;
     const drawn: number[] = [];
     for (let slot = 0; slot < robot.count; ++slot) {
-      if (!robot.isHidden(slot)) {
+      if (isApart || !robot.isHidden(slot)) {
         drawn.push(slot);
       }
     }
@@ -357,6 +357,14 @@ export class RobotView {
     this.placeMotions();
     this.modules.update(this.drawn.length, 'motion', 'turn');
     this.paint();
+  }
+
+  /** Modules elsewhere, in the colours that they have: six numbers for each slot, as displacements are; undefined: by these. */
+  pose(motions: Float64Array | undefined): void {
+    this.mechanism = motions;
+    this.placeMotions();
+    this.modules.update(this.drawn.length, 'motion', 'turn');
+    this.stage.draw();
   }
 
   /** Displacements in cells. */

@@ -22,7 +22,7 @@ plan::Cascade find_cascade(
     const std::function<void(std::size_t standing, std::size_t count)>& progress = {});
 
 /// Lines for the end of report_text().
-std::string cascade_text(const Structure& structure, const plan::Cascade& cascade);
+std::string cascade_text(const model::Robot& robot, const plan::Cascade& cascade);
 
 /// Writes the key "cascade" into the report's object, which is open; docs/formats.md.
 void write_cascade_member(io::JsonStream& json, const plan::Cascade& cascade);

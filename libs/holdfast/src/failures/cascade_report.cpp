@@ -96,9 +96,9 @@ Cascade find_cascade(const Structure& structure, const CheckOptions& options,
   return std::move(found).value();
 }
 
-std::string cascade_text(const Structure& structure, const Cascade& cascade) {
-  std::string text = fmt::format("  {:<12}{}\n", "cascade",
-                                 cascade_headline(cascade, structure.robot.modules().size()));
+std::string cascade_text(const model::Robot& robot, const Cascade& cascade) {
+  std::string text =
+      fmt::format("  {:<12}{}\n", "cascade", cascade_headline(cascade, robot.modules().size()));
   const auto add = [&](const std::string& line) { text += fmt::format("  {:<12}{}\n", "", line); };
   for (std::size_t i = 0; i < std::min(cascade.rounds.size(), kRoundsShownMax); ++i) {
     add(fmt::format("{}: {}", i + 1, round_text(cascade.rounds[i])));

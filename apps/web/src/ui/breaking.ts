@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: The holdfast authors
+// SPDX-License-Identifier: Apache-2.0
+import type { App } from './app';
+import { byId } from './dom';
+
+/** What the user touches of a fall: a robot that topples, or breaks and its pieces fall. */
+export class BreakingPanel {
+  constructor(private readonly app: App) {
+    const { toppling } = app;
+    byId('topple').onclick = () => app.toggleTopple();
+    byId('fall-again').onclick = () => toppling.play();
+    byId('fall-slowly').onclick = () => {
+      toppling.isSlow = !toppling.isSlow;
+      byId('fall-slowly').setAttribute('aria-pressed', String(toppling.isSlow));
+    };
+    app.shownListeners.push(() => this.show());
+    app.fallListeners.push(() => this.show());
+  }
+
+  private show(): void {
+    const { toppling, fall } = this.app;
+    byId('breaking').hidden = fall === undefined;
+    if (fall) {
+      const { isToppled, isAsking, pieces } = toppling;
+      const [begin, end] = fall === 'topples' ? ['Let it topple', 'Stand it up'] : ['Let it break', 'Put it together again'];
+      byId('breaking-title').textContent = fall === 'topples' ? 'The fall' : 'After the break';
+      byId('topple').textContent = isToppled ? end : isAsking ? 'Judging what is left … Stop' : begin;
+      byId('breaking-text').textContent = pieces?.breaking.text.replace(/^ +(cascade +)?/gm, '').trim() ?? '';
+      byId('fall-shown').hidden = !isToppled;
+    }
+  }
+}
