@@ -386,6 +386,42 @@ test('one thing is shown at a time: a stage ends the deformed shape', async () =
   assert.deepEqual(page.faults, []);
 });
 
+test('before a module is taken away it is known what would be left, as the program says', async () => {
+  const page = await openPage(browser, { viewport: DESKTOP });
+  await openExample(page, 'angle_breaks_b');
+  await page.click('#tools button[aria-label=Remove]');
+  const folder = temporaryFolder();
+  const { modules, planned = [], ...rest } = JSON.parse(readFileSync(scenario('angle_breaks_b'), 'utf8'));
+  const said = {};
+  for (const cell of [...modules, ...planned]) {
+    const shown = await page.evaluate(async (at) => {
+      const { app } = globalThis.holdfast;
+      app.whereNext.previewRemoval(at);
+      for (let i = 0; i < 400 && !app.whereNext.trial; ++i) {
+        await new Promise((done) => setTimeout(done, 5));
+      }
+      return { ...app.whereNext.trial, chip: document.getElementById('chip-numbers').textContent };
+    }, cell);
+    const without = (list) => list.filter((one) => String(one) !== String(cell));
+    const file = path.join(folder, 'left.json');
+    writeFileSync(file, JSON.stringify({ ...rest, modules: without(modules), planned: without(planned) }));
+    const report = ask(file);
+    said[shown.verdict] = (said[shown.verdict] ?? 0) + 1;
+    assert.equal(shown.verdict, report.verdict ?? null, String(cell));
+    assert.equal(shown.refusal !== undefined, report.verdict === undefined, shown.refusal);
+    if (shown.verdict === 'safe' || shown.verdict === 'overload') {
+      const { load_ratio_max: ratio } = report.overload;
+      assert.ok(Math.abs(shown.ratio - ratio) <= 1e-9 * ratio, `${cell}: ${shown.ratio}, expected ${ratio}`);
+      assert.match(shown.chip, /→|margin/);
+    }
+  }
+  assert.ok(Object.keys(said).length > 1, JSON.stringify(said));
+  // What is shown goes with the pointer, and with the tool.
+  await page.click('#tools button[aria-label=Attach]');
+  assert.equal(await page.evaluate(() => globalThis.holdfast.app.whereNext.trial), undefined);
+  assert.deepEqual(page.faults, []);
+});
+
 test('how sure it is where strengths scatter is what the program says', async () => {
   const page = await openPage(browser, { viewport: DESKTOP });
   for (const [name, scatter, common] of [['arm_breaks_b', 10, 0], ['arm_breaks_a', 30, 10]]) {

@@ -3,7 +3,7 @@
 import { cellText, type Cell, type Role } from '../model/cell';
 import type { EditedRobot } from '../model/edited_robot';
 import { CoreClient } from './client';
-import type { Trial } from './types';
+import { CoreError, type Trial } from './types';
 
 /** About so long may a batch of places take. */
 const BATCH_MS = 40;
@@ -26,7 +26,8 @@ export class Places {
     }
   }
 
-  known(place: Cell, role: Role): Trial | undefined {
+  /** Without a role: of the removal of the module there. */
+  known(place: Cell, role?: Role): Trial | undefined {
     return this.trials.get(keyOf(place, role));
   }
 
@@ -34,6 +35,26 @@ export class Places {
   async find(robot: EditedRobot, place: Cell, role: Role): Promise<Trial | undefined> {
     const isCurrent = await this.batch(robot, [place], role);
     return isCurrent ? this.known(place, role) : undefined;
+  }
+
+  /** The verdict without a module; undefined if the robot has changed meanwhile. */
+  async findRemoval(robot: EditedRobot, cell: Cell): Promise<Trial | undefined> {
+    const { version } = this;
+    this.begun = performance.now();
+    let trial: Trial = { verdict: null, ratio: NaN, marginMm: NaN };
+    try {
+      const { verdict, load_ratio_max: ratio, stability } = await this.client.check(robot.dataWithout([cell]));
+      trial = { verdict, ratio: ratio ?? NaN, marginMm: stability.margin_mm ?? NaN };
+    } catch (error) {
+      if (!(error instanceof CoreError)) {
+        return undefined;
+      }
+      trial.refusal = error.message;
+    }
+    if (version === this.version) {
+      this.trials.set(keyOf(cell), trial);
+    }
+    return version === this.version ? trial : undefined;
   }
 
   /** All places; `told` after each batch. False: the robot or the question has changed meanwhile. */
@@ -71,4 +92,5 @@ export class Places {
   }
 }
 
-const keyOf = (place: Cell, role: Role) => `${role} ${cellText(place)}`;
+/** Without a role: of the removal of the module there. */
+const keyOf = (place: Cell, role?: Role) => `${role ?? 'removal'} ${cellText(place)}`;

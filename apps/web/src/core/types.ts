@@ -122,6 +122,8 @@ export interface Trial {
   verdict: Verdict | null;
   ratio: number;
   marginMm: number;
+  /** Why what would be left is no robot. */
+  refusal?: string;
 }
 
 /** What is said of a stage of a step; as holdfast steps --json. */

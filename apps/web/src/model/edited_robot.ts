@@ -4,7 +4,8 @@ import { Role, cellText, type Cell } from './cell';
 import { CUBIC, type Lattice, type Place } from './lattice';
 import { TABLE_I, gravityMagnitude, pitchMm, withGravity } from './material';
 import {
-  NO_SURROUNDINGS, ObstacleIndex, isStraightDown, ownLoads, textOf, type OwnLoads, type Surroundings, type Vector,
+  NO_SURROUNDINGS, ObstacleIndex, isStraightDown, ownLoads, textOf, withoutModules, type OwnLoads,
+  type Surroundings, type Vector,
 } from './surroundings';
 
 /** Cells are counted from a robot's first one and stay within this distance of it. */
@@ -251,6 +252,15 @@ export class EditedRobot {
     return { data: { modules, supportZ, material: this.wholeMaterial, more: this.moreText(hasSteps) }, slots };
   }
 
+  /** For the core, as the robot would be without some of its modules. */
+  dataWithout(cells: readonly Cell[]): RobotData {
+    const { data } = this.toData();
+    const gone = new Set(cells.map(String));
+    const rows = Array.from({ length: this.count }, (_, i) => data.modules.subarray(4 * i, 4 * i + 4));
+    const left = rows.filter((row) => !gone.has(String([...row.subarray(0, 3)])));
+    return { ...data, modules: Int32Array.from(left.flatMap((row) => [...row])), more: this.moreText(false, withoutModules(this.more, cells)) };
+  }
+
   /** x, y, z and role of each module, in the order of its slots. */
   toModules(): Int32Array {
     return this.data.slice(0, 4 * this.count);
@@ -278,8 +288,8 @@ export class EditedRobot {
     return isStraightDown(this.gravity) ? withGravity(this.material, -this.gravity[2]) : this.material;
   }
 
-  private moreText(hasSteps: boolean): string {
-    const { steps, gravity_m_s2, ...rest } = this.more;
+  private moreText(hasSteps: boolean, more = this.more): string {
+    const { steps, gravity_m_s2, ...rest } = more;
     const gravity = gravity_m_s2 === undefined || isStraightDown(gravity_m_s2) ? {} : { gravity_m_s2 };
     const isPlain = this.isPlain && rest.material === undefined && (!hasSteps || steps === undefined);
     return isPlain

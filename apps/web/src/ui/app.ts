@@ -268,6 +268,7 @@ export class App {
     this.stopTopple();
     const isGhost = this.bench.tool === 'add' && !this.exhibit && mayBe(this.bench, cell);
     this.whereNext.preview(isGhost ? [cell] : []);
+    this.whereNext.previewRemoval(this.bench.tool === 'remove' && !this.exhibit && this.robot.has(cell) ? cell : undefined);
     const at = this.stage.project(new Vector3().fromArray(this.robot.lattice.place(cell)));
     const box = this.stage.canvas.getBoundingClientRect();
     this.tip.move((at?.x ?? 0) + box.left, (at?.y ?? 0) + box.top);

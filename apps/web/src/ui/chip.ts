@@ -51,7 +51,7 @@ function numbers(answer: Answer | undefined, trial: Trial | undefined): string[]
 
 /** What a ghost would come to, in words and numbers. */
 export const trialText = (trial: Trial, answer: Answer | undefined) =>
-  trial.verdict === null ? 'no such module can be here' : [WOULD[trial.verdict], ...numbers(answer, trial)].join(', ');
+  trial.verdict === null ? (trial.refusal ?? 'no such module can be here') : [WOULD[trial.verdict], ...numbers(answer, trial)].join(', ');
 
 /** `note` stands behind the numbers. */
 export function showChip(robot: EditedRobot, finding: Finding | undefined, trial?: Trial, note = ''): void {

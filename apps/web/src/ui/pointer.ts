@@ -148,6 +148,8 @@ function hover(app: App, x: number, y: number): void {
 function preview(app: App, cells: readonly Cell[]): void {
   const { tool } = app.bench;
   app.whereNext.preview(tool === 'add' || tool === 'obstacle' ? cells : []);
+  const [cell, ...others] = cells;
+  app.whereNext.previewRemoval(tool === 'remove' && others.length === 0 && cell && app.bench.robot.has(cell) ? cell : undefined);
 }
 
 /** What a click there would change. */

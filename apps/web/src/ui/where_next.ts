@@ -25,6 +25,8 @@ export class WhereNext {
   readonly places = new Places();
   /** Modules that would be attached. */
   previewed: readonly Cell[] = [];
+  /** The module that would be taken away. */
+  private removal?: Cell;
   /** The answer to the robot as it is has come; before that nothing is tried. */
   knowsLoads = false;
   /** Another robot than the one that is built is shown. */
@@ -49,6 +51,7 @@ export class WhereNext {
     this.knowsLoads = false;
     this.places.reset();
     this.preview([]);
+    this.removal = undefined;
   }
 
   show(isShown: boolean): void {
@@ -90,6 +93,30 @@ export class WhereNext {
     void this.tryPreviewed();
   }
 
+  /** A module that would be taken away, or none. */
+  previewRemoval(cell: Cell | undefined): void {
+    if (String(cell) !== String(this.removal)) {
+      this.removal = cell;
+      this.onTrial(this.trial);
+      void this.tryRemoval();
+    }
+  }
+
+  private async tryRemoval(): Promise<void> {
+    const { robot } = this.bench;
+    // Without its last module there is no robot.
+    if (this.isTrying || !this.knowsLoads || robot.count < 2 || robot.count > TRIAL_COUNT_MAX) {
+      return;
+    }
+    this.isTrying = true;
+    let isCurrent = true;
+    while (isCurrent && this.removal && !this.places.known(this.removal)) {
+      isCurrent = (await this.places.findRemoval(robot, this.removal)) !== undefined;
+      this.onTrial(this.trial);
+    }
+    this.isTrying = false;
+  }
+
   /** Draws what is known of free faces. */
   paint(): void {
     const code = (place: Cell) => (this.knowsLoads ? this.faceCode(place) : FaceCode.kWaiting);
@@ -121,8 +148,11 @@ export class WhereNext {
     this.onTrial(trial);
   }
 
-  /** Of the one module that would be attached, as far as it is known. */
+  /** Of the one module that would be attached or taken away, as far as it is known. */
   get trial(): Trial | undefined {
+    if (this.bench.tool === 'remove') {
+      return this.removal && this.places.known(this.removal);
+    }
     const [place, ...others] = this.previewed;
     const isOne = place && others.length === 0 && this.bench.tool === 'add';
     return isOne ? this.places.known(place, this.bench.role) : undefined;
