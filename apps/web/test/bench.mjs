@@ -129,7 +129,7 @@ async function whereNext() {
   });
 }
 const ASKED = {
-  cube_1000: EDITED.cube_1000,
+  cube_1000: box([10, 10, 10]),
   tower_9999: box([3, 3, 1111]),
   plate_10000: box([100, 100, 1]),
 };
