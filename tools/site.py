@@ -32,9 +32,9 @@ SECTIONS = [
     ('Evidence', 'Measurements, each made by a command.',
      ['evidence/solver', 'evidence/distributed', 'evidence/planning', 'evidence/cluster',
       'evidence/firmware', 'evidence/wire', 'evidence/visiblesim', 'evidence/page',
-      'evidence/python', 'evidence/general', 'evidence/second_order', 'evidence/proof',
-      'evidence/limit', 'evidence/elastic_and_limit', 'evidence/supports', 'evidence/test6',
-      'evidence/printed_frames']),
+      'evidence/python', 'evidence/general', 'evidence/second_order', 'evidence/reliability',
+      'evidence/proof', 'evidence/limit', 'evidence/elastic_and_limit', 'evidence/supports',
+      'evidence/test6', 'evidence/printed_frames']),
 ]
 
 INDEX = '''# holdfast
