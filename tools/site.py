@@ -34,7 +34,7 @@ SECTIONS = [
       'evidence/firmware', 'evidence/wire', 'evidence/visiblesim', 'evidence/page',
       'evidence/python', 'evidence/general', 'evidence/second_order', 'evidence/reliability',
       'evidence/proof', 'evidence/limit', 'evidence/elastic_and_limit', 'evidence/supports',
-      'evidence/test6', 'evidence/printed_frames']),
+      'evidence/test6', 'evidence/printed_frames', 'evidence/libraries']),
 ]
 
 INDEX = '''# holdfast
