@@ -295,8 +295,12 @@ class Order(_Texts, _Sought):
         return self._held.margin_min_mm
 
     @property
-    def help(self) -> Optional[dict[str, npt.NDArray[np.int32]]]:
-        """Where there is no order: ``supports`` or ``temporary`` modules that would suffice."""
+    def help(self) -> Optional[dict[str, Any]]:
+        """Where there is no order: ``supports`` or ``temporary`` modules that would suffice.
+
+        Or, where only the ways bar it, another ``source``, or the ``reach`` with which there is
+        one. Cells are (n, 3); ``reach`` is None where it has no part.
+        """
         return self._held.help
 
     def robot(self) -> Robot:

@@ -256,6 +256,10 @@ py::object order_help(const io::OrderReport& report) {
   py::dict out;
   out["supports"] = array_of(report.help->supports);
   out["temporary"] = array_of(report.help->temporary);
+  const auto& rule = report.help->rule;
+  out["reach"] = rule ? py::cast(std::string(plan::name(rule->reach))) : py::none();
+  out["source"] =
+      array_of(rule && rule->source ? std::vector{*rule->source} : std::vector<base::Cell>{});
   return out;
 }
 

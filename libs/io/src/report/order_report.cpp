@@ -50,14 +50,32 @@ std::string help_text(const OrderReport& report) {
   if (!report.help) {
     return "null";
   }
+  const auto& rule = report.help->rule;
   return object({member("supports", json_text(report.help->supports)),
-                 member("temporary", json_text(report.help->temporary))});
+                 member("temporary", json_text(report.help->temporary)),
+                 member("reach", rule ? json_text(std::string(plan::name(rule->reach))) : "null"),
+                 member("source", rule && rule->source ? json_text(*rule->source) : "null")});
 }
 
 std::string words(const std::vector<base::Cell>& cells) {
   std::vector<std::string> names;
   std::ranges::transform(cells, std::back_inserter(names), &model::text);
   return fmt::format("{}", fmt::join(names, " "));
+}
+
+/// Says with which other ways there is an order, and why not with those of the task.
+std::string way_words(const plan::OrderTask& task, const plan::ReachRule& other) {
+  if (!other.source) {
+    return fmt::format("  help        only the ways bar it: with --reach {} there is an order\n",
+                       plan::name(other.reach));
+  }
+  const base::Cell& source = *task.rule.source;
+  const bool is_taken =
+      std::ranges::find(task.target.existing, source) != task.target.existing.end();
+  return fmt::format(
+      "  help        only the ways from {}{} bar it: with --source {},{},{} there is an order\n",
+      model::text(source), is_taken ? ", a cell of the target," : "", other.source->x,
+      other.source->y, other.source->z);
 }
 
 std::string help_words(const OrderReport& report) {
@@ -67,6 +85,9 @@ std::string help_words(const OrderReport& report) {
   if (!report.help) {
     return "  help        no single support and no few temporary modules found that would "
            "suffice\n";
+  }
+  if (report.help->rule) {
+    return way_words(report.task, *report.help->rule);
   }
   const bool is_support = !report.help->supports.empty();
   return fmt::format("  help        {}: {}\n",
