@@ -39,12 +39,16 @@ struct OrderArguments {
   bool is_quiet = false;
   std::string steps;
   std::string json;
+  std::string csv;
+  std::string html;
   std::string certificate;
 
   /// The files to be written, each with its option.
   Outputs outputs() const {
     return {{"--output", steps, FileFormat::kPlan},
             {"--json", json, FileFormat::kJson},
+            {"--csv", csv, FileFormat::kCsv},
+            {"--html", html, FileFormat::kHtml},
             {"--certificate", certificate, FileFormat::kJson}};
   }
 };
@@ -186,6 +190,13 @@ int show(const OrderArguments& options, const io::OrderReport& report, const Mor
   }
   if (!options.json.empty() &&
       !write_or_complain(options.json, io::order_json(report, more.members))) {
+    return kExitBadInput;
+  }
+  if (!options.csv.empty() && !write_or_complain(options.csv, io::order_csv(report))) {
+    return kExitBadInput;
+  }
+  if (!options.html.empty() &&
+      !write_or_complain(options.html, order_html(report, more.text, options.thread_count))) {
     return kExitBadInput;
   }
   if (!options.is_quiet && leaves_standard_output(options.outputs())) {
@@ -354,6 +365,10 @@ Command add_order(CLI::App& app) {
       "as far as the search got",
       "STEPS.json");
   add_output(*command, "--json", options->json, "Write a JSON report; - is standard output");
+  add_output(*command, "--csv", options->csv,
+             "Write the modules in their order as a table, CSV; - is standard output");
+  add_output(*command, "--html", options->html,
+             "Write a page with the text and pictures of the order");
   add_output(*command, "--certificate", options->certificate,
              "Where there is no order, write what proves it; holdfast steps --verify replays "
              "it");

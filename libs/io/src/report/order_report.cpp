@@ -10,6 +10,7 @@
 
 #include "holdfast/host/text.hpp"
 #include "holdfast/io/beside_one.hpp"
+#include "holdfast/io/csv.hpp"
 #include "holdfast/io/order_certificate.hpp"
 #include "json/json_text.hpp"
 
@@ -186,6 +187,24 @@ std::string order_json(const OrderReport& report, const std::vector<std::string>
   items.insert(items.end(), found.begin(), found.end());
   items.insert(items.end(), more.begin(), more.end());
   return lines('{', items, '}', 0) + "\n";
+}
+
+std::string order_csv(const OrderReport& report) {
+  CsvTable table("step,x,y,z,verdict,load_ratio_max,load_ratio_bound,margin_mm");
+  const plan::Order& order = report.result.order;
+  const std::size_t count = order.judgements.empty() ? 0 : order.steps.size();
+  for (std::size_t i = 1; i <= count; ++i) {
+    const plan::Judgement& judged = order.judgements[report.is_reversed ? count - i : i];
+    const std::optional<double> none;
+    for (const base::Cell& cell :
+         cells_of(report, order.steps[report.is_reversed ? count - i : i - 1])) {
+      table.count(i - 1).cell(cell).word(verdict::name(judged.verdict));
+      table.number(judged.is_bound ? none : judged.load_ratio_max);
+      table.number(judged.is_bound ? judged.load_ratio_max : none);
+      table.number(judged.margin_mm).end_row();
+    }
+  }
+  return table.text();
 }
 
 std::string order_text(const OrderReport& report) {
