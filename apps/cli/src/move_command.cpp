@@ -218,7 +218,7 @@ void add_limits(CLI::App& command, MoveArguments& options) {
                   "Threads; 0: as many as the machine has cores. The answer does not depend on it")
       ->type_name("N")
       ->check(CLI::Range(0, 64));
-  add_quiet(command, options.is_quiet, "No progress and no text, only the exit code");
+  add_quiet(command, options.is_quiet);
 }
 
 }  // namespace

@@ -116,8 +116,7 @@ Command add_next(CLI::App& app) {
   auto options = std::make_shared<NextArguments>();
   CLI::App* command =
       app.add_subcommand("next", "Say where the next module may go: every free cell, judged");
-  add_required(*command, "FILE", options->file,
-               "Structure: VisibleSim XML, holdfast JSON or binary; - is standard input");
+  add_required(*command, "FILE", options->file, kStructureHelp);
   add_reading(*command, options->reading);
   add_safety_factor(*command, options->reading);
   add_output(*command, "--json", options->json, "Write the places as JSON; - is standard output");

@@ -93,7 +93,8 @@ bool write_picture(const StepsArguments& options, const StepsFile& file,
   }
   const auto picture = draw(options, file, result, options.figure.options);
   if (!picture) {
-    print_error(picture.error(), options.figure.path);
+    print_error(picture.error(),
+                options.step.empty() ? options.figure.path : "--step " + options.step);
     return false;
   }
   return write_figure_or_complain(options.figure,
