@@ -224,7 +224,9 @@ int run(const OrderArguments& options) {
     return kExitUsage;
   }
   if ((options.reach == "surface") != !options.source.empty()) {
-    fmt::print(stderr, "holdfast: --reach surface and --source CELL belong together\n");
+    fmt::print(stderr, "holdfast order: {}\n",
+               options.source.empty() ? "--reach surface requires --source CELL"
+                                      : "--source requires --reach surface");
     return kExitUsage;
   }
   const auto read = read_with_notes(options.target, options.reading);
