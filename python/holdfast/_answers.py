@@ -78,6 +78,16 @@ class _Texts:
         text: str = self._held.json()
         return text
 
+    def csv(self) -> str:
+        """A table; columns are in docs/formats.md."""
+        text: str = self._held.csv()
+        return text
+
+    def html(self) -> str:
+        """A page with pictures and the report."""
+        text: str = self._held.html()
+        return text
+
     @property
     def seconds(self) -> float:
         """How long it took."""
@@ -227,10 +237,6 @@ class Steps(_Texts, Judged, Drawn):
     def strip(self) -> Strip:
         """The start and the robot after each step side by side, up to 24 of them."""
         return Strip(self._held)
-
-    def html(self) -> str:
-        """A page with the picture and the report."""
-        return self._held.html()
 
     def save_vtk(self, path: Path) -> None:
         """Writes a series for ParaView: a .pvd file, and a .vtu file for each state beside it."""
