@@ -8,7 +8,7 @@ The documents show what the program does.
   output; times are not compared, and a line of dots stands for any number of lines
 - every ```json block with a name is a file of that name to these commands
 - the figures are those that tools/draw_figures.py draws
-- the rounds, packets and seconds of the scenarios' tables are those of `holdfast simulate`
+- the rounds, packets and seconds of the scenarios' table are those of `holdfast simulate`
 
 With --renew outputs without dots, tables and figures are written anew; look at the difference.
 """
@@ -130,10 +130,8 @@ def check_row(repository, document, row, cost):
         renewals[document] = text[:found.start(1)] + cost + text[found.end(1):]
 
 
-def check_tables(repository, costs):
+def check_table(repository, costs):
     for name, (rounds, packets, seconds) in costs.items():
-        check_row(repository, 'docs/tour.md', rf'^\| {name} \|.*\| ([^|]* / [^|]*) \| yes \|$',
-                  f'{rounds} / {seconds}')
         check_row(repository, 'docs/evidence/distributed.md', rf'^\| {name} \|.*\| ([^|]*) \|$',
                   f'{rounds}, {packets}, {seconds}')
 
@@ -154,7 +152,7 @@ def main():
         os.symlink(repository / 'examples', folder / 'examples')
         count = sum(check_outputs(document, (repository / document).read_text(), folder)
                     for document in DOCUMENTS if (repository / document).is_file())
-    check_tables(repository, measured(program, repository))
+    check_table(repository, measured(program, repository))
     if '--renew' in sys.argv:
         for document, text in renewals.items():
             (repository / document).write_text(text)

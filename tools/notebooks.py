@@ -4,10 +4,11 @@
 """notebooks.py ROOT [--renew]
 The examples of the Python package are scripts in cells; notebooks and a document come of them.
 
-- examples/python/NAME.ipynb is NAME.py in cells, without outputs
-- every notebook runs, and prints what docs/python_examples.md shows
+- examples/python/NAME.ipynb is NAME.py in cells, with what they put out
+- every notebook runs, and puts that out; docs/python_examples.md shows the same
 
-With --renew notebooks, document and its pictures are written anew; look at the difference. Needs
+Pictures are not compared. With --renew notebooks, document and its pictures are written again; look
+at the difference. Needs
 python3-nbclient, python3-ipykernel, python3-matplotlib, and the package on PYTHONPATH.
 """
 import difflib
@@ -17,7 +18,8 @@ import pathlib
 import re
 import sys
 
-ORDER = ('session', 'figure_6', 'figure_7', 'grow_arch', 'strength_needed', 'visiblesim_folder')
+ORDER = ('session', 'figure_6', 'figure_7', 'grow_arch', 'strength_needed', 'what_if',
+         'visiblesim_folder')
 DOCUMENT = 'docs/python_examples.md'
 # Pictures as SVG with texts as texts, the same in every run; not a part of the notebook.
 PREPARATION = '''import matplotlib
@@ -43,64 +45,87 @@ def cells_of(script):
             yield 'code', source.strip()
 
 
-def notebook_of(script):
-    """A notebook without outputs, as a dictionary."""
+def outputs_of(cell):
+    """What a cell has put out, the same in every run: what is printed, then texts and pictures."""
+    outputs = []
+    # A kernel sends what is printed in pieces, by chance.
+    printed = ''.join(output.get('text', '') for output in cell.outputs).rstrip()
+    if printed:
+        lines = [line.rstrip() + '\n' for line in printed.splitlines()]
+        outputs.append({'output_type': 'stream', 'name': 'stdout', 'text': lines})
+    for output in cell.outputs:
+        data = {kind: output['data'][kind].splitlines(keepends=True)
+                for kind in ('image/svg+xml', 'text/plain') if kind in output.get('data', {})}
+        if data:
+            outputs.append({'output_type': 'display_data', 'metadata': {}, 'data': data})
+    return outputs
+
+
+def notebook_of(script, outputs=None):
+    """A notebook as a dictionary; `outputs` by cell, or none."""
     cells = []
-    for kind, source in cells_of(script):
+    for index, (kind, source) in enumerate(cells_of(script)):
         cell = {'cell_type': kind, 'metadata': {}, 'source': source.splitlines(keepends=True)}
         if kind == 'code':
-            cell.update(execution_count=None, outputs=[])
+            cell.update(execution_count=None, outputs=outputs[index] if outputs else [])
         cells.append(cell)
     kernel = {'display_name': 'Python 3', 'language': 'python', 'name': 'python3'}
     return {'cells': cells, 'metadata': {'kernelspec': kernel}, 'nbformat': 4, 'nbformat_minor': 4}
 
 
-def notebook_text(script):
-    return json.dumps(notebook_of(script), indent=1, ensure_ascii=False) + '\n'
+def notebook_text(notebook):
+    return json.dumps(notebook, indent=1, ensure_ascii=False) + '\n'
+
+
+def without_pictures(text):
+    """Of a notebook, for comparisons."""
+    notebook = json.loads(text)
+    for cell in notebook['cells']:
+        for output in cell.get('outputs', []):
+            if 'image/svg+xml' in output.get('data', {}):
+                output['data']['image/svg+xml'] = []
+    return notebook_text(notebook)
 
 
 def executed(root, script):
-    """The cells of the notebook with what they put out."""
+    """The notebook with what its cells put out, as a dictionary."""
     import nbclient
     import nbformat
     os.environ['PYDEVD_DISABLE_FILE_VALIDATION'] = '1'  # Of the kernel's debugger.
-    notebook = nbformat.reads(notebook_text(script), as_version=4)
+    notebook = nbformat.reads(notebook_text(notebook_of(script)), as_version=4)
     notebook.cells.insert(0, nbformat.v4.new_code_cell(PREPARATION))
     nbclient.NotebookClient(notebook, timeout=300, kernel_name='python3').execute(
         cwd=str(root))
-    return notebook.cells[1:]
+    return notebook_of(script, [outputs_of(cell) if cell.cell_type == 'code' else []
+                                for cell in notebook.cells[1:]])
 
 
-def shown(name, cells):
+def shown(name, notebook):
     """The example as markdown, and its pictures by file name."""
     parts, pictures = [], {}
-    for cell in cells:
-        if cell.cell_type == 'markdown':
-            parts.append(re.sub('^# ', '## ', cell.source))
+    for cell in notebook['cells']:
+        source = ''.join(cell['source'])
+        if cell['cell_type'] == 'markdown':
+            parts.append(re.sub('^# ', '## ', source))
             continue
-        parts.append(f'```python\n{cell.source}\n```')
-        # A kernel sends what is printed in pieces, by chance.
-        printed = ''.join(output.get('text', '') for output in cell.outputs)
-        if printed:
-            lines = '\n'.join(line.rstrip() for line in printed.rstrip().splitlines())
-            parts.append(f'```text\n{lines}\n```')
-        for output in cell.outputs:
+        parts.append(f'```python\n{source}\n```')
+        for output in cell['outputs']:
             data = output.get('data', {})
             if 'image/svg+xml' in data:
                 file = f'python_{name}_{len(pictures) + 1}.svg'
-                pictures[file] = data['image/svg+xml']
+                pictures[file] = ''.join(data['image/svg+xml'])
                 parts.append(f'![{name}]({file})')
-            elif 'text/plain' in data:
-                parts.append(f'```text\n{data["text/plain"]}\n```')
+            else:
+                text = ''.join(output.get('text', data.get('text/plain'))).rstrip()
+                parts.append(f'```text\n{text}\n```')
     return '\n\n'.join(parts) + '\n', pictures
 
 
-def document(root):
+def document(notebooks):
     """The whole document, and all pictures."""
     parts, pictures = [HEAD], {}
-    for name in ORDER:
-        script = (root / f'examples/python/{name}.py').read_text()
-        text, own = shown(name, executed(root, script))
+    for name, notebook in notebooks.items():
+        text, own = shown(name, notebook)
         parts.append(text)
         pictures.update(own)
     return '\n'.join(parts), pictures
@@ -109,15 +134,17 @@ def document(root):
 def main():
     root = pathlib.Path(sys.argv[1]).resolve()
     renews = '--renew' in sys.argv
-    faults = []
-    for path in sorted(root.glob('examples/python/*.py')):
-        notebook = path.with_suffix('.ipynb')
-        text = notebook_text(path.read_text())
+    faults = [f'{path.name} is not in ORDER' for path in root.glob('examples/python/*.py')
+              if path.stem not in ORDER]
+    notebooks = {name: executed(root, (root / f'examples/python/{name}.py').read_text())
+                 for name in ORDER}
+    for name, notebook in notebooks.items():
+        path, text = root / f'examples/python/{name}.ipynb', notebook_text(notebook)
         if renews:
-            notebook.write_text(text)
-        elif not notebook.is_file() or notebook.read_text() != text:
-            faults.append(f'{notebook.name} is not what {path.name} makes')
-    text, pictures = document(root)
+            path.write_text(text)
+        elif not path.is_file() or without_pictures(path.read_text()) != without_pictures(text):
+            faults.append(f'{path.name} is not what {name}.py makes and puts out')
+    text, pictures = document(notebooks)
     if renews:
         (root / DOCUMENT).write_text(text)
         for name, picture in pictures.items():

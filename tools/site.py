@@ -5,7 +5,7 @@
 
 - the documents of docs/, links out of docs/ turned into names of files
 - index.md and a page for each kind of document, from SECTIONS
-- commands.md: what --help says of every command
+- commands.md: what --help says of every command; reports.md: the keys of docs/schemas
 - cpp_api.md and python_api.md: the facade's names, from Doxygen's XML, and the package's
 
 Every document of docs/ has to be in SECTIONS, once.
@@ -16,23 +16,26 @@ import shutil
 import subprocess
 import sys
 
+from reports_page import reports_page
+
 SECTIONS = [
     ('Tutorials', 'From nothing to an answer, step by step.',
      ['first_robot', 'first_plan', 'bring_your_file', 'python_examples', 'tour', 'porting']),
     ('How to', 'One task each.',
      ['install', 'python', 'serve', 'page', 'visiblesim', 'firmware', 'instrument', 'cluster']),
     ('Reference', 'What there is, complete.',
-     ['commands', 'formats', 'robots', 'python_api', 'cpp_api', 'wire', 'building', 'glossary']),
+     ['commands', 'formats', 'reports', 'robots', 'python_api', 'cpp_api', 'wire', 'building',
+      'glossary']),
     ('Explanation', 'Why it works.',
      ['theory', 'second_order', 'general', 'limit', 'reliability', 'cascade', 'proof', 'solver',
       'planning', 'distributed']),
     ('Evidence', 'Measurements, each made by a command.',
      ['evidence/solver', 'evidence/distributed', 'evidence/planning', 'evidence/cluster',
-      'evidence/firmware', 'evidence/visiblesim', 'evidence/page', 'evidence/python',
-      'evidence/general', 'evidence/proof', 'evidence/limit', 'evidence/elastic_and_limit',
-      'evidence/supports', 'evidence/test6', 'evidence/printed_frames']),
+      'evidence/firmware', 'evidence/wire', 'evidence/visiblesim', 'evidence/page',
+      'evidence/python', 'evidence/general', 'evidence/second_order', 'evidence/reliability',
+      'evidence/proof', 'evidence/limit', 'evidence/elastic_and_limit', 'evidence/supports',
+      'evidence/test6', 'evidence/printed_frames', 'evidence/libraries']),
 ]
-GENERATED = {'commands', 'python_api', 'cpp_api'}
 
 INDEX = '''# holdfast
 
@@ -124,6 +127,7 @@ def main():
     shutil.rmtree(folder, ignore_errors=True)
     lay_documents(repository / 'docs', folder)
     (folder / 'commands.md').write_text(commands_page(program))
+    (folder / 'reports.md').write_text(reports_page(repository / 'docs/schemas'))
     (folder / 'cpp_api.md').write_text(CPP_PAGE)
     (folder / 'python_api.md').write_text(PYTHON_PAGE)
     lay_sections(folder)

@@ -13,14 +13,14 @@ Verdicts with margins and loads after Piranda et al., IEEE T-RO 37(6), 2021; equ
 as there. Units: N, mm, kg, s. Cells are VisibleSim's triples, z up.
 """
 from . import _core, robots
+from ._answers import Moves, Order, Outcome, Places, Stage, Steps
 from ._core import Error
 from ._distributed import Run
 from ._failures import Cascade, Fit, Fitted, LoseOne, Reliability, fit
 from ._many import check_many, table
 from ._page import PageNotFound
 from ._pictures import animate, plot_order, plot_steps
-from ._plans import (Moves, Order, Outcome, Places, Stage, Steps, move, next_places, order,
-                     steps)
+from ._plans import move, next_places, order, steps
 from ._report import Remedies, Report, Timings
 from ._robot import Robot, families, foreign_formats, generate, load
 from ._verdict import Verdict

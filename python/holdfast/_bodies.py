@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 import itertools
-from typing import Any, NamedTuple, Optional
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional
 
 import numpy as np
 import numpy.typing as npt
 
-from ._robot import Robot
+if TYPE_CHECKING:
+    from ._robot import Robot
 
 Places = npt.NDArray[np.float64]
 """Points or vectors in the last axis of three."""

@@ -14,8 +14,8 @@ from matplotlib.patches import Patch  # type: ignore[import]
 from matplotlib.ticker import MaxNLocator  # type: ignore[import]
 
 from . import _look
-from ._plans import Order, Stage, Steps
-from ._robot import counted
+from ._answers import Order, Stage, Steps
+from ._given import counted
 from ._verdict import VERDICTS
 
 _RATIO_INK, _MARGIN_INK, _LIMIT_INK = '#2f6690', '#3f6b7d', '#d1495b'

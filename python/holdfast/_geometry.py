@@ -126,6 +126,31 @@ def union(robot: Robot, other: Robot) -> Robot:
     return _made(robot, mine)
 
 
+def pieces(robot: Robot) -> list[Robot]:
+    """See `Robot.pieces`."""
+    parts = robot._held.pieces
+    if not parts:
+        return [robot]
+    document = _document(robot)
+    if any(key in document for key in ('steps', 'later_steps')):
+        raise _core.Error('pieces: expected a robot without steps, which may concern several')
+    cells = robot.modules['cell']
+    return [_made(robot, _part(document, {tuple(cell) for cell in cells[part].tolist()}))
+            for part in parts]
+
+
+def _part(document: dict[str, Any], cells: set[tuple[int, ...]]) -> dict[str, Any]:
+    """The document of the modules in these cells."""
+    def is_in(entry: Any) -> bool:
+        if isinstance(entry, dict):
+            entry = entry.get('cell', entry.get('between'))
+        ends = [entry] if _is_cell(entry) else entry
+        return all(tuple(cell) in cells for cell in ends)
+    return {key: [entry for entry in value if is_in(entry)]
+            if key in ('modules', 'planned', 'loads', 'open', 'connections') else value
+            for key, value in document.items()}
+
+
 def graph(robot: Robot) -> Any:
     """See `Robot.to_networkx`."""
     need('networkx', 'robot.to_networkx()')

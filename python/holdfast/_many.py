@@ -8,8 +8,9 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from . import _core
+from ._given import Table
 from ._progress import Progress, told
-from ._report import Report, Table, expect
+from ._report import Report, expect
 from ._robot import Robot
 
 

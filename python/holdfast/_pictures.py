@@ -8,11 +8,12 @@ import os
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, Optional, Union
 
+from ._answers import Order, Steps
 from ._figures import Path
+from ._given import cell_of
 from ._optional import need
-from ._plans import Order, Steps
 from ._report import Report, expect
-from ._robot import Robot, _cell_of
+from ._robot import Robot
 
 if TYPE_CHECKING:
     from ._film import Film
@@ -76,7 +77,7 @@ def animate(source: Union[Steps, Order, Sequence[Report]], path: Optional[Path] 
 def states(robot: Robot) -> Iterator[Robot]:
     """The robot without its steps, and as it is after each of them."""
     document = json.loads(robot.json())
-    modules = {_cell_of(module): module for module in document.pop('modules')}
+    modules = {cell_of(module): module for module in document.pop('modules')}
     steps = [{'attach': step} for step in (document.pop('planned', None), ) if step]
     steps += [{'attach': step} for step in document.pop('later_steps', [])]
     steps += document.pop('steps', [])
@@ -84,21 +85,21 @@ def states(robot: Robot) -> Iterator[Robot]:
     loads = document.pop('loads', [])
 
     def state() -> Robot:
-        carried = [load for load in loads if _cell_of(load) in modules]
+        carried = [load for load in loads if cell_of(load) in modules]
         text = json.dumps({**document, 'modules': list(modules.values()),
                            **({'loads': carried} if carried else {})})
         return Robot.from_text(text, name=robot.name)
     yield state()
     for step in steps:
-        gone = {_cell_of(cell) for cell in step.get('detach', [])}
-        ways = {_cell_of(move['from']): move['to'] for move in step.get('move', [])}
-        loads = [{**load, 'cell': ways.get(_cell_of(load), load['cell'])} for load in loads
-                 if _cell_of(load) not in gone]
+        gone = {cell_of(cell) for cell in step.get('detach', [])}
+        ways = {cell_of(move['from']): move['to'] for move in step.get('move', [])}
+        loads = [{**load, 'cell': ways.get(cell_of(load), load['cell'])} for load in loads
+                 if cell_of(load) not in gone]
         for cell in gone:
             del modules[cell]
         moved = {tuple(move['to']): modules.pop(tuple(move['from']))
                  for move in step.get('move', [])}
         for cell, module in moved.items():
             modules[cell] = {**module, 'cell': cell} if isinstance(module, dict) else cell
-        modules.update((_cell_of(module), module) for module in step.get('attach', []))
+        modules.update((cell_of(module), module) for module in step.get('attach', []))
         yield state()

@@ -12,15 +12,14 @@ import numpy.typing as npt
 from . import _core, _geometry
 from ._failures import Reliability, reliability_of
 from ._figures import Drawn, Path
+from ._given import Table
+from ._maker import robot_of
 from ._optional import need
 from ._progress import Progress, told
 from ._verdict import VERDICTS, Judged, Verdict
 
 if TYPE_CHECKING:
     from ._robot import Robot
-
-Table = npt.NDArray[Any]
-"""A structured array."""
 
 
 def expect(given: object, kind: type, what: str) -> None:
@@ -77,8 +76,7 @@ class Report(Judged, Drawn):
     @property
     def robot(self) -> Robot:
         """What was checked."""
-        from ._robot import Robot
-        return Robot._of(self._held.structure)
+        return robot_of(self._held.structure)
 
     @property
     def verdict(self) -> Verdict:

@@ -6,172 +6,21 @@ from __future__ import annotations
 import json
 import math
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
-from typing import TYPE_CHECKING, Any, Optional, Union
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _core, _geometry
+from . import _core, _geometry, _maker
+from ._answers import Places
+from ._distributed import Run, events_of, find_image, noise_of
 from ._failures import Cascade, LoseOne, cascade_of, lose_one_of
 from ._figures import Path
+from ._given import (Cell, Cells, Table, cell_of, counted, floats, head_of, json_of, level, listed,
+                     load_list, obstacle_list, own_parts, reading)
 from ._progress import Progress, told
 from ._report import Report
-
-if TYPE_CHECKING:
-    from ._distributed import Run
-    from ._plans import Places
-
-Cells = Union[npt.NDArray[Any], Iterable[Iterable[int]]]
-"""An (n, 3) array of integers, or what numpy makes one of."""
-Cell = tuple[int, int, int]
-Table = npt.NDArray[Any]
-"""A structured array."""
-
-
-def counted(count: int, one: str) -> str:
-    """A number of things with their noun: 1 step, 2 steps."""
-    return f'{count} {one if count == 1 else one + "s"}'
-
-
-def _plain(value: Any) -> Any:
-    """What json does not know: numpy's arrays and numbers."""
-    if isinstance(value, np.ndarray):
-        return value.tolist()
-    if isinstance(value, np.generic):
-        return value.item()
-    raise _core.Error('expected a number, a text, a list or a dictionary, found '
-                      f'{type(value).__name__}')
-
-
-def _json(head: Mapping[str, Any]) -> str:
-    try:
-        return json.dumps(head, default=_plain, allow_nan=False, ensure_ascii=False)
-    except ValueError as error:
-        if isinstance(error, _core.Error):
-            raise
-        raise _core.Error(
-            'expected finite numbers, found one that is infinite or no number') from None
-
-
-def _listed(cells: Any) -> Any:
-    """Sets, in ascending order, and what can be gone through only once, as lists, as numpy takes
-    them."""
-    if isinstance(cells, Set):
-        return sorted(cells)
-    return list(cells) if isinstance(cells, Iterator) else cells
-
-
-def _floats(what: str, given: Any) -> npt.NDArray[np.float64]:
-    """An array of numbers, or Error."""
-    try:
-        return np.asarray(given, dtype=float)
-    except (ValueError, OverflowError) as error:
-        raise _core.Error(f'{what}: {error}') from None
-
-
-def _load_list(loads: Any) -> Any:
-    """The form of holdfast JSON, of a mapping from cells to forces in N, or to six numbers."""
-    if not isinstance(loads, Mapping):
-        return loads
-    entries = []
-    for cell, load in loads.items():
-        numbers = _floats('loads', load).ravel().tolist()
-        if len(numbers) not in (3, 6):
-            raise _core.Error('loads: expected 3 numbers, a force, or 6, a force and a torque, '
-                              f'found {len(numbers)} for {tuple(cell)}')
-        entry = {'cell': list(cell), 'force_n': numbers[:3]}
-        if len(numbers) == 6:
-            entry['torque_nmm'] = numbers[3:]
-        entries.append(entry)
-    return entries
-
-
-def _obstacle_list(obstacles: Any) -> Any:
-    """The form of holdfast JSON; cells are together one obstacle that touches."""
-    if isinstance(obstacles, np.ndarray):
-        obstacles = obstacles.tolist()
-    is_list = isinstance(obstacles, (list, tuple)) and len(obstacles) > 0
-    if is_list and not any(isinstance(entry, Mapping) for entry in obstacles):
-        return [{'cells': obstacles}]
-    return obstacles
-
-
-def _how(lattice: str = '', robot: str = '', allow_unknown: bool = False,
-         supports: Union[int, str, None] = None, pitch: Optional[float] = None) -> dict[str, Any]:
-    """What readers are told beside the file."""
-    return {'lattice': lattice, 'robot': robot, 'allow_unknown': allow_unknown,
-            'supports': supports, 'pitch': pitch}
-
-
-def _level(supports: Any, cells: Any) -> Any:
-    """The layer that ``lowest`` means; other supports as they are."""
-    if not isinstance(supports, str):
-        return supports
-    if supports != 'lowest':
-        raise _core.Error(f"supports: expected a layer z, None, a mapping or 'lowest', found "
-                          f'{supports!r}')
-    array = np.asarray(cells)
-    return int(array[:, 2].min()) if array.ndim == 2 and array.shape[1:] == (3,) else 0
-
-
-def _head(options: Mapping[str, Any], supports: Any) -> str:
-    """Holdfast JSON with all but the modules; empty if all is as it is by default."""
-    said = {key: value for key, value in options.items() if value is not None}
-    if isinstance(supports, Mapping):
-        for key, value in supports.items():
-            if key not in ('support_z', 'floor', 'obstacles') or key in said:
-                raise _core.Error('supports: expected support_z, floor and obstacles, each '
-                                  f'once, found {key!r}')
-            said[key] = _obstacle_list(value) if key == 'obstacles' else value
-    elif supports is None:
-        said['support_z'] = None
-    elif supports != 0:
-        said['support_z'] = supports
-    if not said:
-        return ''
-    return _json({'format': 'holdfast-structure', 'version': 2, 'modules': [], **said})
-
-
-def _cell_of(entry: Any) -> tuple[Any, ...]:
-    """The cell of what has one in holdfast JSON; empty if it has none."""
-    cell = entry.get('cell') if isinstance(entry, dict) else entry
-    return tuple(cell) if isinstance(cell, list) else ()
-
-
-def _own(cells: Any, planned: Any, masses: Any, kind_of: Any) -> list[tuple[int, int, str, float]]:
-    """Modules with masses or kinds of their own: step, index, kind, mass or not a number."""
-    if masses is None and kind_of is None:
-        return []
-    existing = [tuple(cell) for cell in np.asarray(cells).tolist()]
-    to_come = [tuple(cell) for cell in np.asarray([] if planned is None else planned).tolist()]
-    names = existing + to_come
-    if masses is not None and not isinstance(masses, Mapping):
-        values = _floats('masses', masses)
-        if values.shape not in ((len(existing),), (len(names),)):
-            raise _core.Error('masses: expected one number for each of the '
-                              f'{len(existing)} modules, '
-                              f'or a mapping from cells, found the shape {values.shape}')
-        masses = dict(zip(names, values.tolist()))
-    wanted: dict[Any, tuple[str, float]] = {}
-    for cell, kilograms in (masses or {}).items():
-        if not np.isfinite(_floats('masses', kilograms)).all():
-            raise _core.Error(f'masses: expected a number of kg, found {kilograms} for '
-                              f'{tuple(cell)}')
-        wanted[tuple(cell)] = ('', float(kilograms))
-    if not isinstance(kind_of, (Mapping, type(None))):
-        raise _core.Error('kind_of: expected a mapping from cells to names, found '
-                          f'{type(kind_of).__name__}')
-    for cell, kind in (kind_of or {}).items():
-        wanted[tuple(cell)] = (kind, wanted.get(tuple(cell), ('', float('nan')))[1])
-    places = {cell: (0, index) for index, cell in enumerate(existing)}
-    places.update({cell: (1, index) for index, cell in enumerate(to_come)})
-    own = []
-    for cell, (kind, kilograms) in wanted.items():
-        if cell not in places:
-            raise _core.Error(f'masses, kind_of: there is no module at {cell}')
-        own.append((*places[cell], kind, kilograms))
-    return sorted(own)
 
 
 class Robot:
@@ -231,14 +80,14 @@ class Robot:
                  gravity: Optional[Sequence[float]] = None,
                  material: Optional[Mapping[str, Any]] = None, robot: Optional[str] = None,
                  steps: Optional[Sequence[Any]] = None, name: str = '') -> None:
-        cells, planned, fixed = _listed(cells), _listed(planned), _listed(fixed)
-        head = _head({'lattice': lattice and _core.lattice_name(lattice),
-                      'obstacles': _obstacle_list(obstacles), 'kinds': kinds,
-                      'loads': _load_list(loads), 'gravity_m_s2': gravity, 'material': material,
-                      'robot': robot, 'steps': steps, 'name': name or None},
-                     _level(supports, cells))
+        cells, planned, fixed = listed(cells), listed(planned), listed(fixed)
+        head = head_of({'lattice': lattice and _core.lattice_name(lattice),
+                        'obstacles': obstacle_list(obstacles), 'kinds': kinds,
+                        'loads': load_list(loads), 'gravity_m_s2': gravity, 'material': material,
+                        'robot': robot, 'steps': steps, 'name': name or None},
+                       level(supports, cells))
         self._held = _core.Structure.make(cells, planned, fixed, head,
-                                          _own(cells, planned, masses, kind_of))
+                                          own_parts(cells, planned, masses, kind_of))
 
     @classmethod
     def _of(cls, core: _core.Structure) -> Robot:
@@ -259,7 +108,7 @@ class Robot:
         whatever the file says; `pitch` the edge of a module in the unit of a mesh.
         """
         return cls._of(_core.Structure.load_file(
-            path, _how(lattice, robot, allow_unknown, supports, pitch)))
+            path, reading(lattice, robot, allow_unknown, supports, pitch)))
 
     @classmethod
     def from_text(cls, text: str, *, name: str = '', lattice: str = '', robot: str = '',
@@ -271,7 +120,7 @@ class Robot:
         <holdfast.Robot 'one' of 1 module, cubic>
         """
         return cls._of(_core.Structure.load_text(
-            text, name, _how(lattice, robot, allow_unknown, supports)))
+            text, name, reading(lattice, robot, allow_unknown, supports)))
 
     @classmethod
     def from_voxels(cls, voxels: npt.ArrayLike, *, origin: Sequence[int] = (0, 0, 0),
@@ -284,7 +133,7 @@ class Robot:
         >>> Robot.from_voxels(np.ones((2, 1, 3), dtype=bool))
         <holdfast.Robot of 6 modules, cubic>
         """
-        if (shape := _floats('origin', origin).shape) != (3,):
+        if (shape := floats('origin', origin).shape) != (3,):
             raise _core.Error(f'origin: expected a cell, found the shape {shape}')
         array = np.asarray(voxels)
         if array.ndim != 3 or array.dtype.kind not in 'bui':
@@ -371,9 +220,10 @@ class Robot:
         >>> Robot([[0, 0, 0], [1, 0, 0]]).next().safe.shape
         (8, 3)
         """
-        from ._plans import next_places
-        return next_places(self, threads=threads, memory=memory, bonded=bonded, exact=exact,
-                           seconds=seconds, progress=progress)
+        with told(progress, 'next', is_counted=True) as tell:
+            places: Places = Places._of(
+                _core.next(self._held, threads, memory, bonded, exact, seconds, tell))
+        return places
 
     def simulate(self, *, link: str = 'v1', method: str = 'auto', seed: int = 1,
                  noise: Optional[Mapping[str, float]] = None, events: Iterable[Any] = (),
@@ -403,7 +253,6 @@ class Robot:
         >>> run.verdict is run.exact.verdict
         True
         """
-        from ._distributed import Run, events_of, noise_of
         with told(progress, 'simulate') as tell:
             return Run._of(_core.simulate(self._held, link, method, seed, noise_of(noise),
                                           events_of(events), tell))
@@ -416,7 +265,6 @@ class Robot:
         installed. `seconds`: give up after so long on the robot. Events are those of `simulate`,
         but for ``detach``, and ``flip``, ``reset``.
         """
-        from ._distributed import Run, events_of, find_image
         if not _core.can_emulate():
             raise _core.Error('this package was built without Unicorn and cannot emulate; '
                               "install libunicorn-dev and build it anew by './dev python'")
@@ -437,17 +285,17 @@ class Robot:
         document.pop('known_answer', None)
         document['version'] = 2
         document['steps'] = list(steps)
-        text = _json(document)
+        text = json_of(document)
         document = json.loads(text)
-        attached = {_cell_of(cell) for step in document['steps'] if isinstance(step, dict)
+        attached = {cell_of(cell) for step in document['steps'] if isinstance(step, dict)
                     and isinstance(step.get('attach'), list) for cell in step['attach']}
         for entry in own:
-            if _cell_of(entry) in attached:
-                raise _core.Error(f'the planned module {_cell_of(entry)} has a mass or a kind of '
+            if cell_of(entry) in attached:
+                raise _core.Error(f'the planned module {cell_of(entry)} has a mass or a kind of '
                                   'its own, which steps cannot say; expected a robot without it')
-        there = {_cell_of(module) for module in document['modules']} | attached
-        document['loads'] = [load for load in document.get('loads', []) if _cell_of(load) in there]
-        return self.from_text(_json(document), name=self.name)
+        there = {cell_of(module) for module in document['modules']} | attached
+        document['loads'] = [load for load in document.get('loads', []) if cell_of(load) in there]
+        return self.from_text(json_of(document), name=self.name)
 
     @property
     def step_count(self) -> int:
@@ -494,6 +342,24 @@ class Robot:
         <holdfast.Robot of 4 modules, cubic>
         """
         return _geometry.union(self, other)
+
+    def pieces(self) -> list[Robot]:
+        """Each piece of a robot that is in several, as a robot of its own, the largest first.
+
+        >>> [len(piece) for piece in Robot([[0, 0, 0], [1, 0, 0], [5, 0, 0]]).pieces()]
+        [2, 1]
+
+        A robot in one piece is the only one.
+        """
+        return _geometry.pieces(self)
+
+    def largest_piece(self) -> Robot:
+        """The piece with the most modules; of equal ones the first.
+
+        >>> Robot([[0, 0, 0], [1, 0, 0], [5, 0, 0]]).largest_piece()
+        <holdfast.Robot of 2 modules, cubic>
+        """
+        return self.pieces()[0]
 
     def to_networkx(self) -> Any:
         """The modules as a ``networkx.Graph``: nodes are cells, edges connections.
@@ -636,7 +502,7 @@ class Robot:
 
     def __setstate__(self, state: tuple[str]) -> None:
         if state[0] != self.name:
-            self._held = _core.Structure.load_text(self.json(), state[0], _how())
+            self._held = _core.Structure.load_text(self.json(), state[0], reading())
 
     def __copy__(self) -> Robot:
         return self
@@ -650,6 +516,9 @@ class Robot:
         name = f' {self.name!r}' if self.name else ''
         return (f'<holdfast.Robot{name} of {counted(count, "module")}'
                 f'{f" and {planned} planned" if planned else ""}, {self.lattice}>')
+
+
+_maker.robots_are(Robot._of)
 
 
 def load(path: Path, *, lattice: str = '', robot: str = '', allow_unknown: bool = False,

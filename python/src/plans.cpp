@@ -256,6 +256,10 @@ py::object order_help(const io::OrderReport& report) {
   py::dict out;
   out["supports"] = array_of(report.help->supports);
   out["temporary"] = array_of(report.help->temporary);
+  const auto& rule = report.help->rule;
+  out["reach"] = rule ? py::cast(std::string(plan::name(rule->reach))) : py::none();
+  out["source"] =
+      array_of(rule && rule->source ? std::vector{*rule->source} : std::vector<base::Cell>{});
   return out;
 }
 
@@ -324,6 +328,12 @@ void add_places(py::module_& module) {
              return written_text(
                  [&](std::ostream& out) { write_next_json(out, *p.structure, p.result); });
            })
+      .def("csv", [](const Places& p) { return next_csv(p.result); })
+      .def("html",
+           [](const Places& p) {
+             return without_gil(
+                 [&] { return next_html(*p.structure, check(*p.structure), p.result); });
+           })
       .def("text", [](const Places& p) { return next_text(*p.structure, p.result); })
       .def("svg", [](const Places& p, const io::FigureOptions& figure) {
         return without_gil(
@@ -372,7 +382,11 @@ void add_steps(py::module_& module) {
            [](const JudgedSteps& s, const io::FigureOptions& figure) {
              return take(without_gil([&] { return steps_strip_svg(s.file, s.result, figure); }));
            })
-      .def("html", [](const JudgedSteps& s) { return steps_html(s.file, s.result); })
+      .def("csv", [](const JudgedSteps& s) { return steps_csv(s.file, s.result); })
+      .def("html",
+           [](const JudgedSteps& s) {
+             return without_gil([&] { return steps_html(s.file, s.result); });
+           })
       .def("save_vtk", [](const JudgedSteps& s, const py::handle& given) {
         const std::string path = path_of(given);
         expect_ending(path, "pvd");
@@ -404,6 +418,8 @@ void add_order(py::module_& module) {
       .def("as_steps", &order_as_steps)
       .def("certificate", &order_certificate)
       .def("json", [](const OrderReport& r) { return io::order_json(r); })
+      .def("csv", &io::order_csv)
+      .def("html", [](const OrderReport& r) { return without_gil([&] { return order_html(r); }); })
       .def("text", [](const OrderReport& r) { return io::order_text(r); });
   module.def("order", &order);
 }
@@ -422,6 +438,8 @@ void add_move(py::module_& module) {
       .def_property_readonly("seconds", [](const MoveReport& r) { return r.seconds; })
       .def("as_steps", &move_as_steps)
       .def("json", [](const MoveReport& r) { return io::move_json(r); })
+      .def("csv", &io::move_csv)
+      .def("html", [](const MoveReport& r) { return without_gil([&] { return move_html(r); }); })
       .def("text", [](const MoveReport& r) { return io::move_text(r); });
   module.def("move", &move);
 }

@@ -215,6 +215,16 @@ py::array connections_of(const SharedStructure& structure) {
   return array;
 }
 
+/// The indices of the modules of each piece of a robot that is in several, the largest first.
+py::list pieces_of(const Structure& structure) {
+  py::list out;
+  for (const model::RobotPiece& piece : structure.robot.pieces()) {
+    out.append(py::array_t<std::int32_t>(static_cast<py::ssize_t>(piece.modules.size()),
+                                         piece.modules.data()));
+  }
+  return out;
+}
+
 py::array facets(const SharedStructure& structure) {
   using model::Facet;
   const auto list = structure->robot.facets();
@@ -375,6 +385,7 @@ void add_structure(py::module_& module) {
                              [](const Structure& s) { return io::lattice_name(s.robot.lattice()); })
       .def_property_readonly("modules", &modules)
       .def_property_readonly("connections", &connections_of)
+      .def_property_readonly("pieces", &pieces_of)
       .def_property_readonly("facets", &facets)
       .def_property_readonly("positions", &positions)
       .def_property_readonly("masses", &masses)

@@ -112,6 +112,53 @@ def test_a_union_may_be_in_pieces():
         holdfast.Robot([[0, 0, 0], [0, 0, 1], [5, 0, 1], [6, 0, 1]])
 
 
+def split(report):
+    return sorted((piece['modules'], piece['verdict'], piece['load_ratio_max'])
+                  for piece in report.pieces)
+
+
+@pytest.mark.parametrize('seed', range(10))
+def test_pieces_are_the_robots_of_which_a_union_is_made(seed):
+    """What each is as a robot of its own is what the whole says of it."""
+    one, two = grown(seed), grown(seed + 100, 7)
+    both = one.union(two.translated([0, 40, 0]))
+    small, large = sorted(both.pieces(), key=len)
+    assert large.json() == both.largest_piece().json()
+    assert summary(large) == summary(one) and summary(small) == summary(two)
+    assert {tuple(cell) for cell in large.cells.tolist()} == {
+        tuple(cell) for cell in one.cells.tolist()}
+    assert split(both.check()) == sorted((len(piece), *summary(piece)) for piece in both.pieces())
+    assert one.pieces() == [one] and one.largest_piece() is one
+
+
+def test_pieces_keep_what_is_theirs_alone():
+    text = json.dumps({
+        'format': 'holdfast-structure', 'version': 2, 'joined': 'listed',
+        'kinds': {'heavy': {'mass_kg': 0.2}},
+        'modules': [{'cell': [0, 0, 0], 'kind': 'heavy'}, [1, 0, 0], [2, 0, 0], [9, 0, 0],
+                    {'cell': [9, 0, 1], 'fixed': True}, [10, 0, 0]],
+        'planned': [[9, 0, 2]], 'loads': [{'cell': [9, 0, 1], 'force_n': [0, 0, -1]}],
+        'connections': [{'between': [[0, 0, 0], [1, 0, 0]], 'strength_n': 3},
+                        {'between': [[1, 0, 0], [2, 0, 0]]}, {'between': [[9, 0, 0], [9, 0, 1]]},
+                        {'between': [[9, 0, 0], [10, 0, 0]]},
+                        {'between': [[9, 0, 1], [9, 0, 2]]}]})
+    held, flat = holdfast.Robot.from_text(text).pieces()
+    assert (len(held), held.planned.tolist()) == (4, [[9, 0, 2]])
+    assert json.loads(held.json())['loads'][0]['cell'] == [9, 0, 1]
+    assert 'loads' not in json.loads(flat.json()) and len(flat.planned) == 0
+    assert json.loads(flat.json())['connections'][0] == {
+        'between': [[0, 0, 0], [1, 0, 0]], 'strength_n': 3}
+    assert flat.masses.tolist() == [0.2, 0.06106, 0.06106]
+
+
+def test_steps_are_of_all_pieces():
+    robot = holdfast.Robot.from_text(json.dumps({
+        'format': 'holdfast-structure', 'version': 1, 'modules': [[0, 0, 0], [5, 0, 0]],
+        'planned': [[0, 0, 1]], 'later_steps': [[[0, 0, 2]]]}))
+    with pytest.raises(holdfast.Error, match='without steps'):
+        robot.pieces()
+
+
 def test_an_order_is_of_one_piece():
     with pytest.raises(holdfast.Error, match='not connected'):
         holdfast.order(holdfast.Robot([[0, 0, 0], [0, 0, 1], [5, 0, 0]]))

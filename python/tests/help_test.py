@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: The holdfast authors
 # SPDX-License-Identifier: Apache-2.0
 """Every public name is described; examples in descriptions run; types are those that are said."""
+import ast
 import doctest
 import importlib
 import inspect
@@ -58,6 +59,26 @@ def test_errors_are_those_of_values():
 def test_all_names_are_exported():
     public = {name for name in vars(holdfast) if not name.startswith('_')}
     assert public == set(holdfast.__all__)
+
+
+def imported(path):
+    """The package's own modules that a file imports, within functions as well, but for types."""
+    tree = ast.parse(path.read_text())
+    of_types = {id(node) for branch in ast.walk(tree) if isinstance(branch, ast.If)
+                and ast.unparse(branch.test) == 'TYPE_CHECKING' for node in ast.walk(branch)}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node.level == 1 and id(node) not in of_types:
+            yield from [node.module] if node.module else [name.name for name in node.names]
+
+
+def test_no_two_files_import_each_other(root):
+    """Not by way of others either: a file whose imports are all known is known, until all are."""
+    left = {path.stem: set(imported(path)) - {'_core'}
+            for path in (root / 'python/holdfast').glob('*.py')}
+    assert len(left) > 20 and '_report' in left['_robot']
+    while known := {name for name, wanted in left.items() if not wanted & left.keys()}:
+        left = {name: wanted for name, wanted in left.items() if name not in known}
+    assert left == {}
 
 
 def run_mypy(*arguments, folder=None):

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Places, steps, orders, moves and the robot's own computation agree with checks."""
 import copy
+import csv
+import html
 import json
 
 import holdfast
@@ -255,3 +257,26 @@ def test_a_bound_is_no_load_ratio():
     known = ~np.isnan(found)
     assert known.any()
     assert found[known] == pytest.approx(exact[known], rel=1e-6)
+
+
+def test_tables_have_the_numbers_of_the_arrays_and_pages_their_texts():
+    robot = Robot([[0, 0, 0], [0, 0, 1], [1, 0, 1]], name='<small>')
+    places, order = robot.next(), holdfast.order(robot)
+    judged = holdfast.steps(order.robot())
+    moves = holdfast.move(Robot([[0, 0, 0], [1, 0, 0], [2, 0, 0]]),
+                          Robot([[0, 0, 0], [1, 0, 0], [1, 0, 1]]))
+    rows = list(csv.DictReader(places.csv().splitlines()))
+    assert [[int(row[axis]) for axis in 'xyz'] for row in rows] == places.candidates[
+        'cell'].tolist()
+    assert [float(row['margin_mm']) for row in rows] == places.candidates['margin_mm'].tolist()
+    rows = list(csv.DictReader(order.csv().splitlines()))
+    assert [[int(row[axis]) for axis in 'xyz'] for row in rows] == [
+        cell for batch in order.batches for cell in batch.tolist()]
+    rows = list(csv.DictReader(judged.csv().splitlines()))
+    assert len(rows) == judged.stages.size and {row['verdict'] for row in rows} == {'safe'}
+    rows = list(csv.DictReader(moves.csv().splitlines()))
+    assert len(rows) == len(moves.steps) > 0
+    for answer, pictures in ((places, 1), (order, 2), (judged, 2), (moves, 2)):
+        page = answer.html()
+        assert page.count('<svg') == pictures and '<small>' not in page
+        assert all(html.escape(line) in page for line in answer.text().splitlines())

@@ -130,7 +130,8 @@ def test_what_a_file_is_called_is_what_is_written(name, tmp_path):
     for ending in set(ENDINGS) - set(own):
         path = tmp_path / f'robot{ending}'
         text = refuses(lambda: save(path))
-        said = f'what is written is {written}, whose files end in {own[0]}' if written else (
+        endings = {'save_figure': '.svg, .png or .pdf'}.get(name, own[0])
+        said = f'what is written is {written}, whose files end in {endings}' if written else (
             'expected a name that ends in .gif or .html')
         assert text == f'{path}: {said}'
     assert not list(tmp_path.iterdir())

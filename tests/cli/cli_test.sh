@@ -611,8 +611,12 @@ expect_line err '^holdfast check: --view requires --svg$'
 expect_exit 64 check "$safe" --svg a.svg --view frond
 expect_line err 'expected iso, front, side, top, or azimuth and elevation'
 expect_exit 64 check "$safe" --svg a.svg --size 5
-expect_line err 'of 16 to 20000 pixels'
+expect_line err "of 16 to 20000 pixels; found '5'$"
 expect_exit 64 generate cube 3 -o a.png
+expect_line err 'whose files end in .json, .xml or .holdfast$'
+printf '{"format": "holdfast-structure", "version": 1, "moduls": [[0,0,0]]}' >slip.json
+expect_exit 65 check slip.json
+expect_line err "key \"modules\" is missing, .* found 'moduls', did you mean 'modules'.$"
 expect_exit 64 check "$safe" --vtk a.pvd
 expect_line err "what is written is VTK's XML format, whose files end in .vtu"
 

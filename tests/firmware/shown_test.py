@@ -4,7 +4,7 @@
 """shown_test.py HOLDFAST REPOSITORY IMAGES [--renew]
 The documents show what emulated modules do, and how large the images are. IMAGES is build/firmware.
 
-- the rows of the scenarios in docs/firmware.md: seconds are simulated, from the plan
+- the rows of the scenarios in docs/evidence/firmware.md: seconds are simulated, from the plan
   (or the start) to the last module's verdict, on both boards' lines; printed as they are measured
 - the command in docs/tour.md that needs the firmware prints what is shown
 - sizes of images and of the library, wherever a sentence or a table gives them
@@ -32,7 +32,8 @@ class Documents:
     def __init__(self, repository):
         self.repository = repository
         self.texts = {name: (repository / name).read_text()
-                      for name in ('docs/tour.md', 'docs/firmware.md', 'docs/porting.md')}
+                      for name in ('docs/tour.md', 'docs/firmware.md', 'docs/porting.md',
+                                   'docs/evidence/firmware.md')}
         self.faults = []
 
     def expect(self, name, pattern, value):
@@ -79,14 +80,15 @@ def check_scenario(documents, scenario, v2, v1):
     full = begin + [f'{seconds_v1:.2f}', longest, f'{image["step_cycles_mean"]:,}'] + end
     print(f'| {scenario.stem} | ' + ' | '.join(full) + ' |', flush=True)
     row = rf'^\| {scenario.stem} \| (\d[^\n]*) \| [\d,]+ \|$'
-    documents.expect('docs/firmware.md', row, ' | '.join(full))
+    documents.expect('docs/evidence/firmware.md', row, ' | '.join(full))
 
 
 def check_sizes(documents, images, v2, v1):
+    measured = 'docs/evidence/firmware.md'
     flash, ram, agent = (f'{v2[key]:,}' for key in ('flash_bytes', 'ram_bytes', 'agent_bytes'))
     documents.expect('docs/firmware.md', r'the image \(the 62 KB .*\| ([\d,]+) \|$', flash)
-    documents.expect('docs/firmware.md', r'^\| flash at most 60 KB .*\| ([\d,]+) \| met', flash)
-    documents.expect('docs/firmware.md', r'^\| RAM at most 8 KB .*\| (.*) bytes: agent', ram)
+    documents.expect(measured, r'^\| flash at most 60 KB .*\| ([\d,]+) \| met', flash)
+    documents.expect(measured, r'^\| RAM at most 8 KB .*\| (.*) bytes: agent', ram)
     documents.expect('docs/firmware.md', r'It takes (.* of RAM: agent [\d,]+\d)',
                      f'{v1["flash_bytes"]:,} bytes of flash and {v1["ram_bytes"]:,} of RAM: '
                      f'agent {v1["agent_bytes"]:,}')

@@ -56,6 +56,7 @@ _holdfast() {
         --pitch) : ;;
         --safety-factor|--margin) : ;;
         --json) files=1 ;;
+        --csv) files=1 ;;
         --svg) files=1 ;;
         --size) : ;;
         --title) : ;;
@@ -64,7 +65,7 @@ _holdfast() {
         --html) files=1 ;;
         --vtk) files=1 ;;
         --threads) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --json --svg --size --title --grey --view --no-legend --step --strip --html --vtk --until-unsafe --exact --verify -q --quiet --threads"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --json --csv --svg --size --title --grey --view --no-legend --step --strip --html --vtk --until-unsafe --exact --verify -q --quiet --threads"; else files=1; fi ;;
       esac
       ;;
     next)
@@ -76,15 +77,17 @@ _holdfast() {
         --pitch) : ;;
         --safety-factor|--margin) : ;;
         --json) files=1 ;;
+        --csv) files=1 ;;
         --svg) files=1 ;;
         --size) : ;;
         --title) : ;;
         --view) words="iso front side top" ;;
+        --html) files=1 ;;
         --limit) : ;;
         --seconds) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --json --svg --size --title --grey --view --no-legend --limit --exact --seconds -q --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --json --csv --svg --size --title --grey --view --no-legend --html --limit --exact --seconds -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     order)
@@ -100,6 +103,8 @@ _holdfast() {
         --threads) : ;;
         -o|--output) files=1 ;;
         --json) files=1 ;;
+        --csv) files=1 ;;
+        --html) files=1 ;;
         --certificate) files=1 ;;
         --scatter) : ;;
         --scatter-common) : ;;
@@ -114,7 +119,7 @@ _holdfast() {
         --support-z) : ;;
         --pitch) : ;;
         --safety-factor|--margin) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --from --reach --source --avoid --group --reverse --seed --exact --seconds --help-seconds --threads -q --quiet -o --output --json --certificate --strength-needed --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --from --reach --source --avoid --group --reverse --seed --exact --seconds --help-seconds --threads -q --quiet -o --output --json --csv --html --certificate --strength-needed --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin"; else files=1; fi ;;
       esac
       ;;
     move)
@@ -125,6 +130,8 @@ _holdfast() {
         --threads) : ;;
         -o|--output) files=1 ;;
         --json) files=1 ;;
+        --csv) files=1 ;;
+        --html) files=1 ;;
         --verify) files=1 ;;
         --scatter) : ;;
         --scatter-common) : ;;
@@ -139,7 +146,7 @@ _holdfast() {
         --support-z) : ;;
         --pitch) : ;;
         --safety-factor|--margin) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --pivot --within --geometry-only --seed --seconds --threads -q --quiet -o --output --json --verify --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --pivot --within --geometry-only --seed --seconds --threads -q --quiet -o --output --json --csv --html --verify --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin"; else files=1; fi ;;
       esac
       ;;
     simulate)

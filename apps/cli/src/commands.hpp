@@ -83,10 +83,14 @@ inline CLI::Option& add_output(CLI::App& command, const std::string& name, std::
 }
 
 /// The flag -q, --quiet.
-inline void add_quiet(CLI::App& command, bool& is_quiet,
-                      const std::string& help = "Print errors only; the exit code is the answer") {
-  command.add_flag("-q,--quiet", is_quiet, help)->group(kOutputs);
+inline void add_quiet(CLI::App& command, bool& is_quiet) {
+  command.add_flag("-q,--quiet", is_quiet, "Print errors only; the exit code is the answer")
+      ->group(kOutputs);
 }
+
+/// The help of an argument that any command reads.
+inline constexpr const char* kStructureHelp =
+    "Structure in any format that holdfast convert lists; - is standard input";
 
 /// The option --seed. CLI11 by itself takes what is too large for the largest seed.
 inline CLI::Option& add_seed(CLI::App& command, std::uint64_t& seed, const std::string& help) {

@@ -213,8 +213,7 @@ Command add_emulate(CLI::App& app) {
       app.add_subcommand("emulate",
                          "Let the robot work out its own verdict as firmware, one emulated "
                          "microcontroller for every module");
-  add_required(*command, "FILE", options->file,
-               "Structure: VisibleSim XML, holdfast JSON or binary; - is standard input");
+  add_required(*command, "FILE", options->file, kStructureHelp);
   add_reading(*command, options->reading);
   command
       ->add_option("--board", options->board,

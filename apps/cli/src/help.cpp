@@ -252,6 +252,18 @@ std::string reworded(const std::string& text) {
   return text;
 }
 
+/// Adds the value to a message of what an option expects, where it was given one.
+std::string with_value(const CLI::App& command, const std::string& text) {
+  const std::size_t end = text.find(": expected ");
+  if (end == std::string::npos || text.find("found", end) != std::string::npos) {
+    return text;
+  }
+  const CLI::Option* const option = command.get_option_no_throw(text.substr(0, end));
+  return option == nullptr || option->results().size() != 1
+             ? text
+             : fmt::format("{}; found '{}'", text, io::one_line(option->results().front()));
+}
+
 }  // namespace
 
 std::string HelpFormatter::make_option(const CLI::Option* option, bool is_positional) const {
@@ -295,7 +307,7 @@ std::string usage_error(const CLI::App& app, const CLI::Error& error) {
                        io::one_line(app.remaining().front()));
   }
   if (what.empty()) {
-    what = is_extra ? one_too_many(command) : reworded(error.what());
+    what = is_extra ? one_too_many(command) : with_value(command, reworded(error.what()));
   }
   return fmt::format("{0}: {1}\nTry '{0} --help'.\n", full_name(command), what);
 }

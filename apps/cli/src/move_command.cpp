@@ -32,11 +32,16 @@ struct MoveArguments {
   bool is_quiet = false;
   std::string steps;
   std::string json;
+  std::string csv;
+  std::string html;
   std::string verified;
 
   /// The files to be written, each with its option.
   Outputs outputs() const {
-    return {{"--output", steps, FileFormat::kPlan}, {"--json", json, FileFormat::kJson}};
+    return {{"--output", steps, FileFormat::kPlan},
+            {"--json", json, FileFormat::kJson},
+            {"--csv", csv, FileFormat::kCsv},
+            {"--html", html, FileFormat::kHtml}};
   }
 };
 
@@ -78,6 +83,13 @@ int show(const MoveArguments& options, const io::MoveReport& report,
   }
   if (!options.json.empty() &&
       !write_or_complain(options.json, io::move_json(report, failures.member_list()))) {
+    return kExitBadInput;
+  }
+  if (!options.csv.empty() && !write_or_complain(options.csv, io::move_csv(report))) {
+    return kExitBadInput;
+  }
+  if (!options.html.empty() &&
+      !write_or_complain(options.html, move_html(report, failures.text, options.thread_count))) {
     return kExitBadInput;
   }
   if (!options.is_quiet && leaves_standard_output(options.outputs())) {
@@ -206,7 +218,7 @@ void add_limits(CLI::App& command, MoveArguments& options) {
                   "Threads; 0: as many as the machine has cores. The answer does not depend on it")
       ->type_name("N")
       ->check(CLI::Range(0, 64));
-  add_quiet(command, options.is_quiet, "No progress and no text, only the exit code");
+  add_quiet(command, options.is_quiet);
 }
 
 }  // namespace
@@ -227,6 +239,10 @@ Command add_move(CLI::App& app) {
              "Write FROM with the moves as its steps, JSON or VisibleSim XML as the ending says; "
              "- is standard output. If the shape is not found: those to the nearest one");
   add_output(*command, "--json", options->json, "Write a JSON report; - is standard output");
+  add_output(*command, "--csv", options->csv,
+             "Write the moves as a table, CSV; - is standard output");
+  add_output(*command, "--html", options->html,
+             "Write a page with the text and pictures of the moves");
   command
       ->add_option("--verify", options->verified,
                    "Verify the certificate in an earlier JSON report of the same FROM, TO "

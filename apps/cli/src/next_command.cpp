@@ -23,6 +23,8 @@ struct NextArguments {
   Reading reading;
   std::string file;
   std::string json;
+  std::string csv;
+  std::string html;
   Figure figure;
   NextReportOptions report;
   bool is_quiet = false;
@@ -34,7 +36,10 @@ struct NextArguments {
 
   /// The files to be written, each with its option.
   Outputs outputs() const {
-    return {{"--json", json, FileFormat::kJson}, {"--svg", figure.path, FileFormat::kFigure}};
+    return {{"--json", json, FileFormat::kJson},
+            {"--csv", csv, FileFormat::kCsv},
+            {"--svg", figure.path, FileFormat::kFigure},
+            {"--html", html, FileFormat::kHtml}};
   }
 };
 
@@ -45,6 +50,15 @@ bool write_files(const NextArguments& options, const Structure& structure, const
     is_written = write_or_complain(options.json, [&](std::ostream& out) {
       write_next_json(out, structure, result, options.report);
     });
+  }
+  if (!options.csv.empty()) {
+    is_written = write_or_complain(options.csv, next_csv(result, options.report)) && is_written;
+  }
+  if (!options.html.empty()) {
+    const CheckResult checked = check(structure, check_options);
+    is_written =
+        write_or_complain(options.html, next_html(structure, checked, result, options.report)) &&
+        is_written;
   }
   return write_figure_or_complain(options.figure,
                                   [&](const io::FigureOptions& figure) {
@@ -102,12 +116,14 @@ Command add_next(CLI::App& app) {
   auto options = std::make_shared<NextArguments>();
   CLI::App* command =
       app.add_subcommand("next", "Say where the next module may go: every free cell, judged");
-  add_required(*command, "FILE", options->file,
-               "Structure: VisibleSim XML, holdfast JSON or binary; - is standard input");
+  add_required(*command, "FILE", options->file, kStructureHelp);
   add_reading(*command, options->reading);
   add_safety_factor(*command, options->reading);
   add_output(*command, "--json", options->json, "Write the places as JSON; - is standard output");
+  add_output(*command, "--csv", options->csv,
+             "Write the places as a table, CSV; - is standard output");
   add_figure(*command, options->figure, "Draw the structure and a ghost in every place");
+  add_output(*command, "--html", options->html, "Write a page with the picture and the text");
   command
       ->add_option("--limit", options->report.count_max,
                    "List the best N places only; 0: all of them. Of large robots others are left "

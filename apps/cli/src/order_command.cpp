@@ -39,12 +39,16 @@ struct OrderArguments {
   bool is_quiet = false;
   std::string steps;
   std::string json;
+  std::string csv;
+  std::string html;
   std::string certificate;
 
   /// The files to be written, each with its option.
   Outputs outputs() const {
     return {{"--output", steps, FileFormat::kPlan},
             {"--json", json, FileFormat::kJson},
+            {"--csv", csv, FileFormat::kCsv},
+            {"--html", html, FileFormat::kHtml},
             {"--certificate", certificate, FileFormat::kJson}};
   }
 };
@@ -188,6 +192,13 @@ int show(const OrderArguments& options, const io::OrderReport& report, const Mor
       !write_or_complain(options.json, io::order_json(report, more.members))) {
     return kExitBadInput;
   }
+  if (!options.csv.empty() && !write_or_complain(options.csv, io::order_csv(report))) {
+    return kExitBadInput;
+  }
+  if (!options.html.empty() &&
+      !write_or_complain(options.html, order_html(report, more.text, options.thread_count))) {
+    return kExitBadInput;
+  }
   if (!options.is_quiet && leaves_standard_output(options.outputs())) {
     const bool is_way_shown = has_way && options.steps.empty() && options.json.empty();
     fmt::print("{}{}{}", io::order_text(report), more.text,
@@ -213,7 +224,9 @@ int run(const OrderArguments& options) {
     return kExitUsage;
   }
   if ((options.reach == "surface") != !options.source.empty()) {
-    fmt::print(stderr, "holdfast: --reach surface and --source CELL belong together\n");
+    fmt::print(stderr, "holdfast order: {}\n",
+               options.source.empty() ? "--reach surface requires --source CELL"
+                                      : "--source requires --reach surface");
     return kExitUsage;
   }
   const auto read = read_with_notes(options.target, options.reading);
@@ -328,7 +341,7 @@ void add_limits(CLI::App& command, OrderArguments& options) {
                   "Threads; 0: as many as the machine has cores. The answer does not depend on it")
       ->type_name("N")
       ->check(CLI::Range(0, 64));
-  add_quiet(command, options.is_quiet, "No progress and no text, only the exit code");
+  add_quiet(command, options.is_quiet);
 }
 
 }  // namespace
@@ -354,6 +367,10 @@ Command add_order(CLI::App& app) {
       "as far as the search got",
       "STEPS.json");
   add_output(*command, "--json", options->json, "Write a JSON report; - is standard output");
+  add_output(*command, "--csv", options->csv,
+             "Write the modules in their order as a table, CSV; - is standard output");
+  add_output(*command, "--html", options->html,
+             "Write a page with the text and pictures of the order");
   add_output(*command, "--certificate", options->certificate,
              "Where there is no order, write what proves it; holdfast steps --verify replays "
              "it");

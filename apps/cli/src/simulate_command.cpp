@@ -371,8 +371,7 @@ Command add_simulate(CLI::App& app) {
   auto options = std::make_shared<SimulateArguments>();
   CLI::App* command = app.add_subcommand(
       "simulate", "Let the robot work out its own verdict, module by module, message by message");
-  add_required(*command, "FILE", options->file,
-               "Structure: VisibleSim XML, holdfast JSON or binary; - is standard input");
+  add_required(*command, "FILE", options->file, kStructureHelp);
   add_reading(*command, options->reading);
   add_safety_factor(*command, options->reading);
   command

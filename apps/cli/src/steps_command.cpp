@@ -23,6 +23,7 @@ struct StepsArguments {
   std::string file;
   std::string target;
   std::string json;
+  std::string csv;
   Figure figure;
   std::string html;
   std::string vtk;
@@ -37,6 +38,7 @@ struct StepsArguments {
   /// The files to be written, each with its option.
   Outputs outputs() const {
     return {{"--json", json, FileFormat::kJson},
+            {"--csv", csv, FileFormat::kCsv},
             {"--svg", figure.path, FileFormat::kFigure},
             {"--html", html, FileFormat::kHtml},
             {"--vtk", vtk, FileFormat::kPvd}};
@@ -91,7 +93,8 @@ bool write_picture(const StepsArguments& options, const StepsFile& file,
   }
   const auto picture = draw(options, file, result, options.figure.options);
   if (!picture) {
-    print_error(picture.error(), options.figure.path);
+    print_error(picture.error(),
+                options.step.empty() ? options.figure.path : "--step " + options.step);
     return false;
   }
   return write_figure_or_complain(options.figure,
@@ -106,6 +109,9 @@ bool write_files(const StepsArguments& options, const StepsFile& file, const Ste
       write_steps_json(out, file, result, failures.members);
       out << '\n';
     });
+  }
+  if (!options.csv.empty()) {
+    is_written = write_or_complain(options.csv, steps_csv(file, result)) && is_written;
   }
   is_written = write_picture(options, file, result) && is_written;
   if (!options.html.empty()) {
@@ -175,7 +181,8 @@ bool complain_of_series(const StepsArguments& options) {
         io::one_line(options.vtk));
     return true;
   }
-  for (const std::string& file : {options.file, options.json, options.figure.path, options.html}) {
+  for (const std::string& file :
+       {options.file, options.json, options.csv, options.figure.path, options.html}) {
     if (!options.vtk.empty() && is_in_series(file, options.vtk)) {
       fmt::print(stderr, "holdfast: {}: --vtk {} may write a file of this name\n",
                  io::one_line(file), io::one_line(options.vtk));
@@ -272,6 +279,8 @@ Command add_steps(CLI::App& app) {
   add_safety_factor(*command, options->reading);
   add_output(*command, "--json", options->json,
              "Write the whole report as JSON; - is standard output");
+  add_output(*command, "--csv", options->csv,
+             "Write all stages as a table, CSV; - is standard output");
   add_figure(*command, options->figure, "Draw verdicts, load ratio and margin along the sequence");
   add_states(*command, *options);
   add_output(*command, "--html", options->html,
@@ -290,6 +299,7 @@ Command add_steps(CLI::App& app) {
       ->add_flag("--verify", options->is_certificate,
                  "FILE is a certificate that there is no order, of holdfast order: replay it")
       ->excludes("--json")
+      ->excludes("--csv")
       ->excludes("--svg")
       ->excludes("--html")
       ->excludes("--vtk")

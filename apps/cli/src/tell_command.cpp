@@ -96,7 +96,8 @@ Command add_tell(CLI::App& app) {
                "FILE");
   command->get_option("WHAT")->check(
       CLI::IsMember({"plan", "withdraw", "anchor", "fixed", "free", "configure"}).description(""));
-  command->add_option("VALUE", arguments->value, "What belongs to it")->type_name("");
+  command->add_option("VALUE", arguments->value, "A cell, a file or a word, as WHAT says")
+      ->type_name("");
   add_reading(*command, arguments->reading);
   add_baud(*command, arguments->options);
   return {command,

@@ -54,8 +54,7 @@ Command add_twin(CLI::App& app) {
       "twin", "Compare modules on the table with the same robot in simulation, face by face");
   add_required(*command, "DEVICE", arguments->device,
                "A serial adapter at a free face of a module");
-  add_required(*command, "FILE", arguments->file,
-               "Structure: VisibleSim XML, holdfast JSON or binary; - is standard input");
+  add_required(*command, "FILE", arguments->file, kStructureHelp);
   command->add_option("--also", arguments->others, "Another one, at another module")
       ->type_name("DEVICE")
       ->allow_extra_args(false);

@@ -82,8 +82,7 @@ Command add_view(CLI::App& app) {
   auto options = std::make_shared<ViewArguments>();
   CLI::App* command =
       app.add_subcommand("view", "Open a structure in the browser, to look at and to change");
-  add_required(*command, "FILE", options->file,
-               "Structure: VisibleSim XML, holdfast JSON or binary; - is standard input");
+  add_required(*command, "FILE", options->file, kStructureHelp);
   add_reading(*command, options->reading);
   add_output(*command, "--out", options->out,
              "Write the page there, not into a temporary file; - is standard output");

@@ -11,7 +11,8 @@
 #include "holdfast/agent/wire/wire.hpp"
 #include "holdfast/base/cell.hpp"
 
-/// Golden text of the wire format, written by hand from docs/wire.md, which shows the same lines.
+/// Golden text of the wire format, written by hand from docs/wire.md; docs/evidence/wire.md
+/// shows the same lines.
 namespace holdfast::agent::test {
 
 /// Orders by operation: 1 to 5, 12 to 31.

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The bytes on the wire. Every line of golden text was written by hand from the tables of
-// docs/wire.md, where it stands too (the last test looks it up there); checksums come from a second
-// method, a division of polynomials bit by bit.
+// docs/wire.md; docs/evidence/wire.md shows it too (the last test looks it up there). Checksums
+// come from a second method, a division of polynomials bit by bit.
 #include "holdfast/agent/wire/wire.hpp"
 
 #include <gtest/gtest.h>
@@ -425,8 +425,8 @@ TEST(Wire, reading_past_the_end_gives_zeros) {
 }
 
 TEST(Wire, the_document_shows_every_golden_line) {
-  std::ifstream file(HOLDFAST_WIRE_DOCUMENT);
-  ASSERT_TRUE(file.is_open()) << HOLDFAST_WIRE_DOCUMENT;
+  std::ifstream file(HOLDFAST_WIRE_BYTES);
+  ASSERT_TRUE(file.is_open()) << HOLDFAST_WIRE_BYTES;
   std::stringstream text;
   text << file.rdbuf();
   const auto expect_shown = [&](std::string_view line) {

@@ -24,7 +24,7 @@ struct Endings {
 const std::vector<Endings>& formats() {
   static const std::vector<Endings> all = {
       {FileFormat::kJson, "JSON", {".json"}},
-      {FileFormat::kStructure, "holdfast JSON", {".json", ".xml", ".holdfast"}},
+      {FileFormat::kStructure, "a structure", {".json", ".xml", ".holdfast"}},
       {FileFormat::kHoldfastJson, "holdfast JSON", {".json"}},
       {FileFormat::kPlan, "holdfast JSON or VisibleSim XML", {".json", ".xml"}},
       {FileFormat::kCsv, "CSV", {".csv"}},
@@ -39,6 +39,16 @@ const std::vector<Endings>& formats() {
 /// The endings of formats that nothing here writes.
 constexpr std::string_view kOtherEndings[] = {".png", ".pdf",    ".jpg", ".jpeg", ".gif", ".eps",
                                               ".vtk", ".vtkhdf", ".stl", ".obj",  ".md"};
+
+/// ".svg, .png or .pdf".
+std::string endings_of(const Endings& format) {
+  std::string text;
+  for (std::size_t i = 0; i < format.own.size(); ++i) {
+    text += i == 0 ? "" : i + 1 == format.own.size() ? " or " : ", ";
+    text += format.own[i];
+  }
+  return text;
+}
 
 }  // namespace
 
@@ -64,7 +74,7 @@ std::optional<base::Error> find_foreign_ending(FileFormat format, std::string_vi
     return std::nullopt;
   }
   return base::bad_input(
-      fmt::format("what is written is {}, whose files end in {}", own->name, own->own.front()));
+      fmt::format("what is written is {}, whose files end in {}", own->name, endings_of(*own)));
 }
 
 }  // namespace holdfast

@@ -5,6 +5,8 @@
 #include <chrono>
 #include <utility>
 
+#include "plan_page.hpp"
+
 namespace holdfast {
 namespace {
 
@@ -68,6 +70,18 @@ base::Result<ProvedMoves> verify_moves(const io::Document& start, const io::Docu
                      .task = std::move(task).value(),
                      .is_backward = certificate.value().is_backward,
                      .check = check.value()};
+}
+
+std::string move_html(const io::MoveReport& report, std::string_view more, int thread_count) {
+  const std::string text = io::move_text(report) + std::string(more);
+  const std::string name = name_of(report.start, report.origin);
+  return plan_html({.command = "move",
+                    .name = name,
+                    .answer = plan::name(report.plan.outcome),
+                    .pictures = {},
+                    .text = text},
+                   report.plan.steps.empty() ? io::Document() : io::move_steps(report),
+                   thread_count);
 }
 
 }  // namespace holdfast

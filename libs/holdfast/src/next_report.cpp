@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "holdfast/io/csv.hpp"
+#include "holdfast/io/report_page.hpp"
 #include "holdfast/trial.hpp"
 
 namespace holdfast {
@@ -104,6 +106,26 @@ std::string next_text(const Structure& structure, const NextResult& result,
     text += "  undecided as linear theory does not suffice there: ask holdfast check --deformed\n";
   }
   return text;
+}
+
+std::string next_csv(const NextResult& result, const NextReportOptions& options) {
+  io::CsvTable table("x,y,z,verdict,load_ratio_max,load_ratio_bound,margin_mm");
+  for (const Trial& trial : listed(result, options)) {
+    table.cell(trial.cell).word(verdict::name(trial.verdict)).number(trial.load_ratio_max);
+    table.number(trial.load_ratio_bound).number(trial.margin_mm).end_row();
+  }
+  return table.text();
+}
+
+std::string next_html(const Structure& structure, const CheckResult& checked,
+                      const NextResult& result, const NextReportOptions& options) {
+  const std::string answer = host::counted(result.count(Verdict::kSafe), "safe place");
+  const std::string text = next_text(structure, result, options);
+  return io::write_report_page({.command = "next",
+                                .name = structure.name,
+                                .answer = answer,
+                                .pictures = {next_svg(structure, checked, result, options)},
+                                .text = text});
 }
 
 std::string next_svg(const Structure& structure, const CheckResult& checked,

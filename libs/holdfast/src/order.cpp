@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "holdfast/plan/robot_state.hpp"
+#include "plan_page.hpp"
 
 namespace holdfast {
 
@@ -47,6 +48,21 @@ base::Result<io::OrderReport> seek_order(const io::Document& target, const Order
                                                 .is_interrupted = request.is_interrupted});
   }
   return report;
+}
+
+std::string order_html(const io::OrderReport& report, std::string_view more, int thread_count) {
+  const plan::Order& order = report.result.order;
+  const std::string text = io::order_text(report) + std::string(more) +
+                           (order.steps.empty() ? "" : io::order_way_text(report));
+  auto steps = order.steps.empty() ? base::Result<io::Document>(io::Document())
+                                   : io::order_steps(report.target, order, report.is_reversed);
+  const std::string name = name_of(report.target, report.origin);
+  return plan_html({.command = "order",
+                    .name = name,
+                    .answer = io::name(order.outcome),
+                    .pictures = {},
+                    .text = text},
+                   steps ? std::move(steps).value() : io::Document(), thread_count);
 }
 
 base::Result<ProvedOrder> verify_order_certificate(std::string_view text,

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "holdfast/host/text.hpp"
+#include "plan_page.hpp"
 #include "step_walk.hpp"
 
 namespace holdfast {
@@ -271,13 +272,48 @@ base::Result<std::string> steps_strip_svg(const StepsFile& file, const StepsResu
 
 std::string steps_html(const StepsFile& file, const StepsResult& result,
                        const StepsOptions& options) {
-  const auto strip = steps_strip_svg(file, result, {}, options);
-  return io::write_steps_html(entry_of(file, result),
-                              strip ? std::string_view(strip.value()) : std::string_view());
+  const std::string text = steps_text(file, result);
+  return io::write_report_page({.command = "steps",
+                                .name = file.name,
+                                .answer = verdict::name(result.judgement.verdict()),
+                                .pictures = steps_pictures(file, result, options),
+                                .text = text});
 }
 
 std::string steps_text(const StepsFile& file, const StepsResult& result) {
   return io::write_steps_text(entry_of(file, result));
+}
+
+std::string steps_csv(const StepsFile& file, const StepsResult& result) {
+  return io::write_steps_csv(entry_of(file, result));
+}
+
+std::vector<std::string> steps_pictures(const StepsFile& file, const StepsResult& result,
+                                        const StepsOptions& options) {
+  std::vector<std::string> pictures = {steps_svg(file, result)};
+  if (auto strip = steps_strip_svg(file, result, {}, options)) {
+    pictures.push_back(std::move(strip).value());
+  }
+  return pictures;
+}
+
+std::string name_of(const io::Document& document, const io::ReportOrigin& origin) {
+  return document.name.empty() ? std::filesystem::path(origin.file).stem().string() : document.name;
+}
+
+std::string plan_html(io::ReportPage page, io::Document steps, int thread_count) {
+  const StepsFile file{
+      .name = std::string(page.name), .document = std::move(steps), .warnings = {}};
+  const StepsOptions options = {.thread_count = thread_count};
+  std::string text(page.text);
+  if (io::step_count(file.document) > 0) {
+    if (const auto judged = judge_steps(file, options)) {
+      page.pictures = steps_pictures(file, judged.value(), options);
+      text += "\n" + steps_text(file, judged.value());
+    }
+  }
+  page.text = text;
+  return io::write_report_page(page);
 }
 
 }  // namespace holdfast

@@ -300,7 +300,7 @@ TEST(BadInput, of_another_json_format_is_refused) {
   expect_refusal(
       {"{\"format\": \"holdfast-structure\"}", "", "key \"version\" is missing, expected 1 or 2"});
   expect_refusal({"{\"format\": \"holdfast-structure\", \"version\": 3}", "/version",
-                  "found version 3, this program reads versions 1 to 2 only",
+                  "expected version 1 to 2, found 3: this program knows no newer one",
                   base::ErrorCode::kUnsupported});
   expect_refusal(
       {"{\"format\": \"holdfast-structure\", \"version\": 1, \"blocks\": []}", "",

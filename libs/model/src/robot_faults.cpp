@@ -23,7 +23,7 @@ constexpr double kNumberMax = 1e12;
 
 std::optional<std::string> find_size_fault(const RobotSpec& spec) {
   if (spec.existing.empty()) {
-    return "the robot has no existing module, at least one is needed";
+    return "the robot has no existing module, expected at least one";
   }
   if (spec.existing.size() + spec.planned.size() > kModuleCountMax) {
     return fmt::format("{} modules, expected at most {}",

@@ -18,7 +18,6 @@
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/base/rng.hpp"
 #include "holdfast/model/families.hpp"
-#include "holdfast/plan/order_help.hpp"
 #include "holdfast/verdict/assessment.hpp"
 #include "seeds.hpp"
 
@@ -491,21 +490,6 @@ TEST(RobotOrder, of_a_module_below_the_support_level_is_found_along_every_way) {
     certificate.closure.states.emplace_back(target.existing.size()).insert(0);
     EXPECT_FALSE(verify(certificate)) << name(rule.reach);
   }
-}
-
-TEST(RobotOrder, is_helped_below_the_support_level_where_the_target_is_there) {
-  // An arm of one module, 40 mm long, on another one that hangs from a fixed one: the topmost
-  // connection carries 2 w + 2 w (40 mm) / (40 mm) = 4 w by Eq. (17), for a strength of 3 w. An
-  // obstacle under the arm, or under the module that it is on, takes enough of that.
-  model::RobotSpec target{.existing = {{0, 0, 0}, {0, 0, -1}, {1, 0, -1}}, .fixed = {{0, 0, 0}}};
-  const double strength = 3 * model::module_weight_n(target.material);
-  target.material.strength_vertical_n = target.material.strength_lateral_n = strength;
-  const OrderTask task{.target = target};
-  EXPECT_EQ(find_robot_order(task).value().order.outcome, OrderOutcome::kNone);
-  const auto help = find_help(task);
-  ASSERT_TRUE(help);
-  ASSERT_EQ(help->supports.size(), 1U);
-  EXPECT_EQ(help->supports[0].z, -2);
 }
 
 /// A module between two others gets in from above only, and not through a cell to be avoided. The

@@ -39,6 +39,11 @@ struct MoveRequest {
 base::Result<io::MoveReport> seek_moves(const io::Document& start, const io::Document& target,
                                         const MoveRequest& request = {});
 
+/// A page with the report for people, and the steps with their pictures as steps_html() has them.
+/// `more` stands behind the report.
+std::string move_html(const io::MoveReport& report, std::string_view more = {},
+                      int thread_count = 0);
+
 /// The claims that a certificate has proved, and of which robots.
 struct ProvedMoves {
   std::string start_name;  ///< As the documents say; may be empty, both.

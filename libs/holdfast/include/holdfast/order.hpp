@@ -42,6 +42,11 @@ struct OrderRequest {
   std::function<void(std::size_t states, std::size_t grown, std::size_t shrunk)> progress = {};
 };
 
+/// A page with the report for people, and the steps with their pictures as steps_html() has them.
+/// `more` stands behind the report.
+std::string order_html(const io::OrderReport& report, std::string_view more = {},
+                       int thread_count = 0);
+
 /// Seeks an order for all modules of a document, existing or planned. Errors: those of
 /// io::make_spec() and plan::find_robot_order().
 base::Result<io::OrderReport> seek_order(const io::Document& target, const OrderRequest& request);

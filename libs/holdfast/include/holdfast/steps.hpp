@@ -58,6 +58,7 @@ base::Result<StepsResult> judge_steps(const StepsFile& file, const StepsOptions&
 void write_steps_json(std::ostream& out, const StepsFile& file, const StepsResult& result,
                       const io::MoreKeys& more = {});
 std::string steps_text(const StepsFile& file, const StepsResult& result);
+std::string steps_csv(const StepsFile& file, const StepsResult& result);
 std::string steps_svg(const StepsFile& file, const StepsResult& result,
                       const io::FigureOptions& figure = {});
 

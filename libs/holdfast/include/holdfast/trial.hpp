@@ -146,6 +146,13 @@ void write_next_members(io::JsonStream& json, const Structure& structure, const 
 std::string next_text(const Structure& structure, const NextResult& result,
                       const NextReportOptions& options = {});
 
+/// A table of the places as CSV, the best first.
+std::string next_csv(const NextResult& result, const NextReportOptions& options = {});
+
+/// A page with the picture of next_svg() and the report for people.
+std::string next_html(const Structure& structure, const CheckResult& checked,
+                      const NextResult& result, const NextReportOptions& options = {});
+
 /// The structure as picture_svg() draws it, with a ghost in every place, in its verdict's colour.
 std::string next_svg(const Structure& structure, const CheckResult& checked,
                      const NextResult& result, const NextReportOptions& options = {},

@@ -336,7 +336,7 @@ base::Result<BinaryStructure> make_binary(const Document& document) {
   BinaryStructure structure{
       .low = {}, .text = common_text(document), .records = records_of(document)};
   if (structure.records.empty()) {
-    return base::bad_input("no modules, at least one is needed");
+    return base::bad_input("expected at least one module, found none");
   }
   structure.low = low_corner(document.extension.lattice, structure.records);
   if (auto error = sort_along_curve(document.extension.lattice, structure.low, structure.records)) {

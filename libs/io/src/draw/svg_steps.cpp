@@ -110,6 +110,9 @@ struct Curve {
   const char* ink;
 };
 
+/// A value so near below zero is rounding, and no reason for an axis below zero.
+constexpr double kRounding = 1e-9;
+
 void add_curve(std::string& out, const std::vector<Column>& columns, const Curve& curve,
                double top) {
   double low = std::min(0.0, curve.limit);
@@ -121,7 +124,7 @@ void add_curve(std::string& out, const std::vector<Column>& columns, const Curve
     }
   }
   high = high > 0 ? round_up(high) : 1;
-  low = low < 0 ? -round_up(-low) : 0;
+  low = low < -kRounding ? -round_up(-low) : 0;
   const auto y_of = [&](double value) {
     return top + kPanelHeight * (high - value) / (high - low);
   };
@@ -203,17 +206,6 @@ std::string write_steps_svg(const StepsEntry& entry, const FigureOptions& figure
             second_panel);
   add_step_numbers(out, *entry.judgement, second_panel + kPanelHeight + 18);
   return finished(out + "</svg>\n", figure);
-}
-
-std::string write_steps_html(const StepsEntry& entry, std::string_view strip) {
-  return fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<title>{0} - holdfast "
-      "steps</title>\n<style>body {{ font-family: sans-serif; margin: 2em; }} svg {{ max-width: "
-      "100%; height: auto; }} pre {{ overflow-x: auto; }}</style>\n<h1>{0}: "
-      "{1}</h1>\n{2}{4}<pre>{3}"
-      "</pre>\n</html>\n",
-      escape(entry.name), verdict::name(entry.judgement->verdict()), write_steps_svg(entry),
-      escape(write_steps_text(entry)), strip);
 }
 
 }  // namespace holdfast::io

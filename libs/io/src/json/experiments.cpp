@@ -211,7 +211,9 @@ base::Result<Experiments> read_experiments(std::string_view text) {
   for (const auto& [key, expected] : {std::pair<const char*, Json>{"format", kFormat},
                                       std::pair<const char*, Json>{"version", 1}}) {
     if (value.is_object() && (!value.contains(key) || value.at(key) != expected)) {
-      reading.fail(top.at(key), fmt::format("expected {}", expected.dump()));
+      reading.fail(top.at(key),
+                   fmt::format("expected {}, found {}", expected.dump(),
+                               value.contains(key) ? value.at(key).dump() : "no such key"));
     }
   }
   for (const auto& [key, member] : reading.members(value, top)) {

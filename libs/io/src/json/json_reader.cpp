@@ -102,10 +102,11 @@ bool JsonReader::read_heading(const Json& root, const JsonPlace& place,
   if (format != kJsonFormatName) {
     expect("format", fmt::format("\"{}\"", kJsonFormatName));
   } else if (version.is_number() && version.get<double>() > kJsonVersionMax) {
-    reading_.fail({base::ErrorCode::kUnsupported,
-                   fmt::format("found version {}, this program reads versions 1 to {} only",
-                               version.dump(), kJsonVersionMax),
-                   place.at("version").pointer()});
+    reading_.fail(
+        {base::ErrorCode::kUnsupported,
+         fmt::format("expected version 1 to {}, found {}: this program knows no newer one",
+                     kJsonVersionMax, version.dump()),
+         place.at("version").pointer()});
   } else if (version != 1 && version != kJsonVersionMax) {
     expect("version", fmt::format("1 or {}", kJsonVersionMax));
   } else if (root.find("modules") == root.end()) {

@@ -70,8 +70,14 @@ void JsonReading::fail(const JsonPlace& place, std::string message) {
 
 void JsonReading::fail_missing(const Json& object, const JsonPlace& place, std::string_view key,
                                std::string_view expected) {
+  std::string found = describe(object);
+  for (const auto& [name, value] : object.items()) {
+    if (near_miss(name, {&key, 1})) {
+      found = excerpt(name) + ", " + did_you_mean(key);
+    }
+  }
   fail(place, fmt::format("key \"{}\" is missing{}{}; found {}", key,
-                          expected.empty() ? "" : ", expected ", expected, describe(object)));
+                          expected.empty() ? "" : ", expected ", expected, found));
 }
 
 void JsonReading::refuse(const Json& value, const JsonPlace& place, std::string_view expected) {

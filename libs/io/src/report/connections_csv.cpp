@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "connection_list.hpp"
+#include "holdfast/io/csv.hpp"
 #include "holdfast/io/report.hpp"
 #include "ordered_blocks.hpp"
 
@@ -19,13 +20,6 @@ constexpr std::string_view kNames =
 
 /// Rows that one thread makes at a time, some 60 KB.
 constexpr std::size_t kBlockRows = 512;
-
-/// The shortest digits that give the number back; "nan" and "inf" as they are, a zero without a
-/// sign.
-template <class Number>
-void append(std::string& out, Number number) {
-  fmt::format_to(std::back_inserter(out), FMT_COMPILE("{},"), number + Number(0));
-}
 
 /// The step that leads to the second module, in axial coordinates: "+x" and so on along one of
 /// them, as between cubes; else "-x+z" and the like.
@@ -46,15 +40,13 @@ void append_row(std::string& out, const model::Robot& robot, std::size_t connect
                 const verdict::ConnectionResult& result) {
   const auto [a, b] = model::ends(robot, connection);
   for (const base::Cell& cell : {a, b}) {
-    append(out, cell.x);
-    append(out, cell.y);
-    append(out, cell.z);
+    fmt::format_to(std::back_inserter(out), FMT_COMPILE("{},{},{},"), cell.x, cell.y, cell.z);
   }
   out += step_name(robot.lattice(), robot.connections()[connection].direction);
   out += ',';
   for (const double number : {result.load_ratio, result.axial_n, result.bending_nmm, result.shear_n,
                               result.torsion_nmm}) {
-    append(out, number);
+    append_csv(out, number);
   }
   out += verdict::breaks(result.load_ratio) ? "1\n" : "0\n";
 }

@@ -10,6 +10,7 @@
 
 #include "holdfast/host/text.hpp"
 #include "holdfast/io/beside_one.hpp"
+#include "holdfast/io/csv.hpp"
 #include "json/json_text.hpp"
 #include "json/json_values.hpp"
 
@@ -57,6 +58,21 @@ StageCount count_stages(const plan::MovePlan& plan) {
     }
   }
   return count;
+}
+
+/// The worst verdict, the largest load ratio and the least margin of the stages that have one.
+plan::Judgement worst_of(const plan::StepJudgement& step) {
+  plan::Judgement worst = step.stages.front();
+  for (const plan::StageJudgement& stage : step.stages) {
+    if (verdict::severity(stage.verdict) > verdict::severity(worst.verdict)) {
+      worst.verdict = stage.verdict;
+    }
+    worst.load_ratio_max = std::max(worst.load_ratio_max, stage.load_ratio_max);
+    if (stage.margin_mm && (!worst.margin_mm || *stage.margin_mm < *worst.margin_mm)) {
+      worst.margin_mm = stage.margin_mm;
+    }
+  }
+  return worst;
 }
 
 std::optional<double> load_ratio_of(const plan::MovePlan& plan) {
@@ -172,6 +188,25 @@ std::string move_json(const MoveReport& report, const std::vector<std::string>& 
   items.insert(items.end(), found.begin(), found.end());
   items.insert(items.end(), more.begin(), more.end());
   return lines('{', items, '}', 0) + "\n";
+}
+
+std::string move_csv(const MoveReport& report) {
+  CsvTable table("step,from_x,from_y,from_z,to_x,to_y,to_z,verdict,load_ratio_max,margin_mm");
+  const plan::MovePlan& plan = report.plan;
+  for (std::size_t i = 0; i < plan.steps.size(); ++i) {
+    const bool is_judged = plan.judgement && i < plan.judgement->steps.size();
+    for (const model::Move& move : plan.steps[i].moves) {
+      table.count(i).cell(move.from).cell(move.to);
+      if (!is_judged) {
+        table.word("").word("").word("").end_row();
+        continue;
+      }
+      const plan::Judgement worst = worst_of(plan.judgement->steps[i]);
+      table.word(verdict::name(worst.verdict)).number(worst.load_ratio_max);
+      table.number(worst.margin_mm).end_row();
+    }
+  }
+  return table.text();
 }
 
 std::string move_text(const MoveReport& report) {

@@ -10,6 +10,7 @@
 
 #include "holdfast/host/text.hpp"
 #include "holdfast/io/beside_one.hpp"
+#include "holdfast/io/csv.hpp"
 #include "holdfast/io/order_certificate.hpp"
 #include "json/json_text.hpp"
 
@@ -50,14 +51,32 @@ std::string help_text(const OrderReport& report) {
   if (!report.help) {
     return "null";
   }
+  const auto& rule = report.help->rule;
   return object({member("supports", json_text(report.help->supports)),
-                 member("temporary", json_text(report.help->temporary))});
+                 member("temporary", json_text(report.help->temporary)),
+                 member("reach", rule ? json_text(std::string(plan::name(rule->reach))) : "null"),
+                 member("source", rule && rule->source ? json_text(*rule->source) : "null")});
 }
 
 std::string words(const std::vector<base::Cell>& cells) {
   std::vector<std::string> names;
   std::ranges::transform(cells, std::back_inserter(names), &model::text);
   return fmt::format("{}", fmt::join(names, " "));
+}
+
+/// Says with which other ways there is an order, and why not with those of the task.
+std::string way_words(const plan::OrderTask& task, const plan::ReachRule& other) {
+  if (!other.source) {
+    return fmt::format("  help        only the ways bar it: with --reach {} there is an order\n",
+                       plan::name(other.reach));
+  }
+  const base::Cell& source = *task.rule.source;
+  const bool is_taken =
+      std::ranges::find(task.target.existing, source) != task.target.existing.end();
+  return fmt::format(
+      "  help        only the ways from {}{} bar it: with --source {},{},{} there is an order\n",
+      model::text(source), is_taken ? ", a cell of the target," : "", other.source->x,
+      other.source->y, other.source->z);
 }
 
 std::string help_words(const OrderReport& report) {
@@ -67,6 +86,9 @@ std::string help_words(const OrderReport& report) {
   if (!report.help) {
     return "  help        no single support and no few temporary modules found that would "
            "suffice\n";
+  }
+  if (report.help->rule) {
+    return way_words(report.task, *report.help->rule);
   }
   const bool is_support = !report.help->supports.empty();
   return fmt::format("  help        {}: {}\n",
@@ -165,6 +187,24 @@ std::string order_json(const OrderReport& report, const std::vector<std::string>
   items.insert(items.end(), found.begin(), found.end());
   items.insert(items.end(), more.begin(), more.end());
   return lines('{', items, '}', 0) + "\n";
+}
+
+std::string order_csv(const OrderReport& report) {
+  CsvTable table("step,x,y,z,verdict,load_ratio_max,load_ratio_bound,margin_mm");
+  const plan::Order& order = report.result.order;
+  const std::size_t count = order.judgements.empty() ? 0 : order.steps.size();
+  for (std::size_t i = 1; i <= count; ++i) {
+    const plan::Judgement& judged = order.judgements[report.is_reversed ? count - i : i];
+    const std::optional<double> none;
+    for (const base::Cell& cell :
+         cells_of(report, order.steps[report.is_reversed ? count - i : i - 1])) {
+      table.count(i - 1).cell(cell).word(verdict::name(judged.verdict));
+      table.number(judged.is_bound ? none : judged.load_ratio_max);
+      table.number(judged.is_bound ? judged.load_ratio_max : none);
+      table.number(judged.margin_mm).end_row();
+    }
+  }
+  return table.text();
 }
 
 std::string order_text(const OrderReport& report) {

@@ -7,6 +7,7 @@
 
 #include "holdfast/host/text.hpp"
 #include "holdfast/io/beside_one.hpp"
+#include "holdfast/io/csv.hpp"
 #include "holdfast/io/report.hpp"
 #include "holdfast/io/steps_report.hpp"
 
@@ -106,6 +107,23 @@ void add_part(std::string& text, std::string_view verb, std::size_t count, const
 }
 
 }  // namespace
+
+std::string write_steps_csv(const StepsEntry& entry) {
+  CsvTable table("step,stage,verdict,load_ratio_max,load_ratio_bound,margin_mm");
+  const auto& steps = entry.judgement->steps;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    for (const plan::Stage stage :
+         {plan::Stage::kRelease, plan::Stage::kShift, plan::Stage::kConnect}) {
+      const StageJudgement& judged = stage_of(steps[i], stage);
+      const std::optional<double> none;
+      table.count(i).word(plan::name(stage)).word(verdict::name(judged.verdict));
+      table.number(judged.is_bound ? none : judged.load_ratio_max);
+      table.number(judged.is_bound ? judged.load_ratio_max : none);
+      table.number(judged.margin_mm).end_row();
+    }
+  }
+  return table.text();
+}
 
 std::string step_text(const Document& document, std::size_t step) {
   std::string text;

@@ -156,7 +156,7 @@ std::optional<base::Error> find_avoid_fault(const OrderTask& task) {
   if (task.rule.reach == Reach::kFree) {
     return base::bad_input(
         "cells to be avoided bar ways, and modules that get anywhere have none: choose line or "
-        "surface");
+        "surface for how modules reach their cells");
   }
   const std::set<Cell> modules(task.target.existing.begin(), task.target.existing.end());
   for (const Cell& cell : task.rule.avoid) {

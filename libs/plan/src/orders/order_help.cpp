@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 #include <set>
 #include <utility>
 
@@ -21,6 +22,15 @@ constexpr std::size_t kPairedCellsMax = 60;
 
 /// Runs of modules that would help are sought up to this length.
 constexpr std::size_t kRunMax = 40;
+
+/// Other sources are tried up to this number.
+constexpr std::size_t kSourcesMax = 40;
+
+/// How far cells are apart, in steps of their coordinates.
+std::int64_t distance(const Cell& a, const Cell& b) {
+  const auto apart = [](std::int32_t x, std::int32_t y) { return std::abs(std::int64_t{x} - y); };
+  return apart(a.x, b.x) + apart(a.y, b.y) + apart(a.z, b.z);
+}
 
 std::vector<Cell> sorted(std::vector<Cell> cells) {
   std::ranges::sort(cells);
@@ -43,6 +53,7 @@ class HelpSearch {
   bool is_free(const Cell& cell) const;
   void list_cells();
   std::vector<std::vector<Cell>> runs() const;
+  std::vector<Help> other_sources() const;
   std::optional<Help> try_all(const std::vector<Help>& helps) const;
   bool serves(const Help& help) const;
   bool has_order(const OrderTask& task) const;
@@ -115,6 +126,7 @@ bool HelpSearch::has_order(const OrderTask& task) const {
 
 bool HelpSearch::serves(const Help& help) const {
   OrderTask helped = task_;
+  helped.rule = help.rule.value_or(task_.rule);
   for (const Cell& cell : help.supports) {
     helped.target.obstacles.push_back({.from = cell, .to = cell});
   }
@@ -142,25 +154,50 @@ std::optional<Help> HelpSearch::try_all(const std::vector<Help>& helps) const {
   return std::nullopt;
 }
 
+/// Free cells beside the target instead of the source, the nearest first.
+std::vector<Help> HelpSearch::other_sources() const {
+  std::vector<Help> helps;
+  if (!task_.rule.source) {
+    return helps;
+  }
+  std::vector<Cell> cells = beside_;
+  std::ranges::stable_sort(cells, {},
+                           [&](const Cell& cell) { return distance(cell, *task_.rule.source); });
+  cells.resize(std::min(cells.size(), kSourcesMax));
+  for (const Cell& cell : cells) {
+    helps.push_back({.rule = task_.rule});
+    helps.back().rule->source = cell;
+  }
+  return helps;
+}
+
 std::optional<Help> HelpSearch::run() {
+  const Help free_ways = {.rule = ReachRule{}};
+  const bool is_barred_by_ways = task_.rule.reach != Reach::kFree && serves(free_ways);
+  if (is_barred_by_ways) {
+    if (auto other = try_all(other_sources())) {
+      return other;
+    }
+  }
   std::vector<Help> helps;
   for (const Cell& cell : below_) {
-    helps.push_back({.supports = {cell}, .temporary = {}});
+    helps.push_back({.supports = {cell}});
   }
   for (const Cell& cell : beside_) {
-    helps.push_back({.supports = {}, .temporary = {cell}});
+    helps.push_back({.temporary = {cell}});
   }
   for (std::size_t i = 0; beside_.size() <= kPairedCellsMax && i < beside_.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
-      helps.push_back({.supports = {}, .temporary = {beside_[k], beside_[i]}});
+      helps.push_back({.temporary = {beside_[k], beside_[i]}});
     }
   }
   for (std::vector<Cell>& run : runs()) {
-    helps.push_back({.supports = {}, .temporary = std::move(run)});
+    helps.push_back({.temporary = std::move(run)});
   }
   std::ranges::stable_sort(
       helps, {}, [](const Help& help) { return help.supports.size() + help.temporary.size(); });
-  return try_all(helps);
+  auto found = try_all(helps);
+  return found || !is_barred_by_ways ? found : free_ways;
 }
 
 }  // namespace

@@ -36,6 +36,9 @@ std::string move_json(const MoveReport& report, const std::vector<std::string>& 
 /// Lines for people; a line feed at the end.
 std::string move_text(const MoveReport& report);
 
+/// A table as CSV of the moves in their order, with the worst of each one's stages.
+std::string move_csv(const MoveReport& report);
+
 /// The start with the steps that were found.
 Document move_steps(const MoveReport& report);
 

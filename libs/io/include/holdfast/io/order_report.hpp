@@ -31,6 +31,10 @@ std::string order_json(const OrderReport& report, const std::vector<std::string>
 
 std::string order_text(const OrderReport& report);
 
+/// A table as CSV of the modules in the order in which they are attached, or detached, with the
+/// state after each one's step.
+std::string order_csv(const OrderReport& report);
+
 /// The text that follows order_text() if the order is written to no file: where it begins, and its
 /// first steps.
 std::string order_way_text(const OrderReport& report);

@@ -49,8 +49,7 @@ std::string write_steps_text(const StepsEntry& entry);
 /// step; of long sequences some steps together, by their worst. Self-contained.
 std::string write_steps_svg(const StepsEntry& entry, const FigureOptions& figure = {});
 
-/// A page with the picture, a film strip in SVG if there is one, and the report for people.
-/// Self-contained, without scripts.
-std::string write_steps_html(const StepsEntry& entry, std::string_view strip = {});
+/// A table of all stages as CSV, in their order.
+std::string write_steps_csv(const StepsEntry& entry);
 
 }  // namespace holdfast::io

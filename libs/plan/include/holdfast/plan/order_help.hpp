@@ -12,10 +12,12 @@
 /// The least help with which a robot can be built that has no order.
 namespace holdfast::plan {
 
-/// One of the two is empty.
+/// One of the three, the others are empty.
 struct Help {
-  std::vector<base::Cell> supports;   ///< Cells in which an obstacle would have to be.
-  std::vector<base::Cell> temporary;  ///< Modules to attach on the way, and to detach at the end.
+  std::vector<base::Cell> supports = {};   ///< Cells in which an obstacle would have to be.
+  std::vector<base::Cell> temporary = {};  ///< Modules to attach on the way, to detach at the end.
+  /// Other ways with which there is an order: from another source, or free ones.
+  std::optional<ReachRule> rule = {};
 };
 
 struct HelpOptions {
@@ -25,10 +27,12 @@ struct HelpOptions {
   std::function<bool()> is_interrupted = {};  ///< As of RobotOrderOptions.
 };
 
-/// Tries single obstacles below modules, single modules beside the target, pairs of them, and
-/// straight runs of modules from the target to itself or to the floor, those of fewest cells first;
-/// the first one that serves, or none if nothing did in the time given. With temporary modules all
-/// of the target is built first and then they are detached, each state on the way safe.
+/// Tries other sources, the nearest first, if nothing but the ways bars an order; then single
+/// obstacles below modules, single modules beside the target, pairs of them, and straight runs of
+/// modules from the target to itself or to the floor, those of fewest cells first. Returns the
+/// first one that serves, else free ways if these do, or none if nothing did in the time given.
+/// With temporary modules all of the target is built first and then they are detached, each state
+/// on the way safe.
 std::optional<Help> find_help(const OrderTask& task, const HelpOptions& options = {});
 
 }  // namespace holdfast::plan
