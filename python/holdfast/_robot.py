@@ -325,7 +325,7 @@ class Robot:
         deformed, up_to
             Judges the equilibrium in the deformed shape, followed up to a factor of all loads.
         follow
-            Goes on behind the first loss of stability: `behind` of `Report.deformed`.
+            Goes on behind the first loss of stability: ``behind`` of `Report.deformed`.
         progress
             Called with (iteration, error) while a large robot is solved; True: a bar of tqdm's.
         """
