@@ -62,15 +62,16 @@ class DeformedSeries::Body {
     if (!pending_ || error_) {
       return;
     }
-    const auto [state, is_stable] = *std::exchange(pending_, std::nullopt);
+    const Level level = *std::exchange(pending_, std::nullopt);
+    const double factor = level.state.factor;
     const verdict::Assessment assessment =
-        verdict::assess_state(structure_.robot, state, is_stable, is_bonded_);
+        verdict::assess_state(structure_.robot, level.state, level.is_stable, is_bonded_);
     error_ = files_.add(files_.count(), 0, 1, [&](std::ostream& out) {
-      io::write_deformed_vtu(out, structure_.robot, assessment, state.factor,
+      io::write_deformed_vtu(out, structure_.robot, assessment, factor,
                              {.thread_count = thread_count_},
                              structure_.document.extension.obstacles);
     });
-    last_ = {state.factor, state.displacement_max_mm};
+    last_ = {factor, level.state.displacement_max_mm};
   }
 
   SeriesFiles files_;
