@@ -198,6 +198,8 @@ ROBOTS = {
     'latched': structure([0, 0, 0], [0, 0, 1], [1, 0, 1], material={'shear_strength_n': 50},
                          steps=[{'attach': [[2, 0, 1]]}]),
     'foot': structure([0, 0, 0]),
+    'column': structure([0, 0, 0], [0, 0, 1], [0, 0, 2], [0, 0, 3], [0, 0, 4],
+                        material={'elastic_modulus_mpa': 0.09}),
     'row': structure([0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0]),
     'shifted': structure([1, 0, 0], [2, 0, 0], [3, 0, 0], [4, 0, 0]),
     'pieces': structure([0, 0, 0], [0, 0, 1], [5, 0, 0], [5, 0, 1], [6, 0, 1]),
@@ -223,6 +225,11 @@ def commands(scenarios, tests):
     yield ['check', breaks, '--limit', '--limit-seconds', '0']
     yield from (['check', path, '--deformed'] for path in (safe, topples))
     yield ['check', safe, '--deformed', '--up-to', '1', '--set', 'elastic_modulus_mpa=0.001']
+    for modulus in ('0.001', '0.02', '0.15'):  # Too soft, collapses, holds.
+        yield ['check', safe, '--deformed', '--follow', '--cascade', '--set',
+               f'elastic_modulus_mpa={modulus}']
+    yield ['check', 'column.json', '--deformed', '--follow', '--bonded']
+    yield ['check', safe, '--lose-one', '--cascade', '--lose', 'connections,modules']
     yield from (['check', path, '--remedies'] for path in (safe, breaks, topples))
     yield from (['check', path, '--scatter', '10%', '--lose-one'] for path in (safe, topples))
     yield ['check', general[0], '--scatter', '5%', '--scatter-common', '3%', '--lose-one']

@@ -176,7 +176,7 @@ class Served(unittest.TestCase):
                          ['result']['exit_code'], 0)
 
     def test_what_is_wrong_is_said(self):
-        together = {'structure': ARM, 'deformed': True, 'cascade': True}
+        together = {'structure': ARM, 'deformed': True, 'remedies': True}
         for params, words in (({}, ["'structure'", 'missing']),
                               ({'structur': ARM}, ['structur', "did you mean 'structure'"]),
                               ({'structure': 3}, ['found a number']),
@@ -186,7 +186,7 @@ class Served(unittest.TestCase):
                               ({'structure': ARM, 'set': [[1]]}, ['set', 'found an array']),
                               ({'structure': ARM, 'svg': '../x'}, ['svg', 'ending']),
                               ({'structure': ARM, 'json': 'x'}, ['json']),
-                              (together, ['--cascade'])):
+                              (together, ['--remedies'])):
             self.assert_error(self.client.ask('check', **params), -32602, *words)
         bad = {'format': 'holdfast-structure', 'version': 1, 'modules': [[0, 0, 0], [0, 0]]}
         self.assert_error(self.client.ask('check', structure=bad), -32001, '/modules/1')

@@ -256,13 +256,19 @@ class Report(Judged, Drawn):
         """The equilibrium in the deformed shape, by the keys of the JSON report.
 
         ``factor_critical``, ``kind`` and ``events`` of the path, an array ``path`` of it with the
-        columns factor, load_ratio_max and displacement_max_mm, and the state at the loads. None
-        without ``check(deformed=True)``, or where the robot topples unbent.
+        columns factor, load_ratio_max and displacement_max_mm, and the state at the loads; with
+        ``follow=True``, where stability is lost, also ``behind``, of whose branches ``path`` has
+        the column stable besides. None without ``check(deformed=True)``, or where the robot topples
+        unbent.
         """
         found: Optional[dict[str, Any]] = json.loads(self.json()).get('deformed')
         if found is not None:
             found['path'] = np.array([[point['factor'], point['load_ratio_max'],
                                        point['displacement_max_mm']] for point in found['path']])
+            for branch in found.get('behind', []):
+                branch['path'] = np.array([[point['factor'], point['load_ratio_max'],
+                                            point['displacement_max_mm'], point['stable']]
+                                           for point in branch['path']])
         return found
 
     @property

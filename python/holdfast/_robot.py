@@ -155,7 +155,7 @@ class Robot:
 
     def check(self, *, threads: int = 0, memory: float = 4, bonded: bool = False,
               limit: bool = False, limit_seconds: float = 600, proof: bool = False,
-              deformed: bool = False, up_to: float = 2,
+              deformed: bool = False, up_to: float = 2, follow: bool = False,
               progress: Progress = None) -> Report:
         """Says whether the robot holds with its planned modules attached (Eqs. 1-17).
 
@@ -173,20 +173,24 @@ class Robot:
             Proves the largest load ratio; a verdict that is not proved becomes `undecided`.
         deformed, up_to
             Judges the equilibrium in the deformed shape, followed up to a factor of all loads.
+        follow
+            Goes on behind the first loss of stability: ``behind`` of `Report.deformed`.
         progress
             Called with (iteration, error) while a large robot is solved; True: a bar of tqdm's.
         """
         with told(progress, 'check') as tell:
             return Report._of(_core.check(self._held, threads, memory, bonded, limit,
-                                          limit_seconds, proof, deformed, up_to, tell))
+                                          limit_seconds, proof, deformed, up_to, follow, tell))
 
     def lose_one(self, *, parts: Sequence[str] = ('connection', 'module', 'foot'),
                  seconds: float = math.inf, threads: int = 0, memory: float = 4,
-                 bonded: bool = False, progress: Progress = None) -> LoseOne:
+                 bonded: bool = False, cascade: bool = False, deformed: bool = False,
+                 progress: Progress = None) -> LoseOne:
         """What follows if any single connection, module or foot is lost?
 
         Losses that are not judged after `seconds` are undecided; `progress` is called with (losses
-        judged, of how many).
+        judged, of how many). With `cascade` each fatal loss says what follows it; with `deformed`
+        all is judged in the deformed shape.
 
         >>> square = Robot([[x, y, 0] for x in range(2) for y in range(2)])
         >>> square.lose_one(parts=['connection']).holds_all
@@ -194,20 +198,22 @@ class Robot:
         """
         with told(progress, 'lose_one', is_counted=True) as tell:
             return lose_one_of(_core.lose_one(self._held, list(parts), seconds, threads, memory,
-                                              bonded, tell))
+                                              bonded, cascade, deformed, tell))
 
     def cascade(self, *, threads: int = 0, memory: float = 4, bonded: bool = False,
-                progress: Progress = None) -> Cascade:
+                deformed: bool = False, progress: Progress = None) -> Cascade:
         """What follows the break: which connections break one after another, what falls?
 
-        `progress` is called with (modules that stand, of how many).
+        `progress` is called with (modules that stand, of how many). With `deformed` each piece is
+        judged in its deformed shape.
 
         >>> arm = Robot([[x, 0, 2] for x in range(7)], fixed=[[0, 0, 2]])
         >>> arm.cascade().fallen
         6
         """
         with told(progress, 'cascade', is_counted=True) as tell:
-            return cascade_of(_core.cascade(self._held, threads, memory, bonded, tell))
+            return cascade_of(_core.cascade(self._held, threads, memory, bonded, deformed,
+                                             tell))
 
     def next(self, *, threads: int = 0, memory: float = 4, bonded: bool = False,
              exact: bool = False, seconds: float = math.inf,

@@ -30,7 +30,7 @@ SharedCheck check_shared(const SharedStructure& structure, const py::handle& thr
                          const py::handle& memory, bool is_bonded, bool is_limit_wanted,
                          const py::handle& limit_seconds, bool is_proof_wanted,
                          bool is_deformed_wanted, const py::handle& factor_max,
-                         py::object progress) {
+                         bool is_followed_behind, py::object progress) {
   CheckOptions options = check_options(threads, memory, is_bonded);
   if (is_deformed_wanted && is_proof_wanted) {
     throw Error("deformed and proof do not go together: a proof is one of linear theory");
@@ -41,6 +41,11 @@ SharedCheck check_shared(const SharedStructure& structure, const py::handle& thr
                                                     : "limit");
   }
   options.is_deformed_wanted = is_deformed_wanted;
+  if (is_followed_behind && !is_deformed_wanted) {
+    throw Error(
+        "follow requires deformed: it goes on behind the loss of stability that this finds");
+  }
+  options.is_followed_behind = is_followed_behind;
   options.factor_max = number_of(factor_max, "up_to", 1, 1e6);
   options.is_limit_wanted = is_limit_wanted;
   options.limit_seconds_max =

@@ -70,10 +70,13 @@ std::string reliability(const SharedCheck& check, const py::object& scatter, dou
 
 std::string lose_one(const SharedStructure& structure, const std::vector<std::string>& parts,
                      double seconds, const py::handle& threads, const py::handle& memory,
-                     bool is_bonded, py::object progress) {
+                     bool is_bonded, bool is_cascade_wanted, bool is_deformed_wanted,
+                     py::object progress) {
   expect_one_piece(*structure, "lose_one()");
   LoseOneOptions options;
   options.check = check_options(threads, memory, is_bonded);
+  options.check.is_deformed_wanted = is_deformed_wanted;
+  options.is_cascade_wanted = is_cascade_wanted;
   options.seconds_max = seconds;
   options.kinds = {};
   for (const std::string& part : parts) {
@@ -103,9 +106,11 @@ std::string fit(const std::string& text, const std::string& folder) {
 }
 
 std::string cascade(const SharedStructure& structure, const py::handle& threads,
-                    const py::handle& memory, bool is_bonded, py::object progress) {
+                    const py::handle& memory, bool is_bonded, bool is_deformed_wanted,
+                    py::object progress) {
   expect_one_piece(*structure, "cascade()");
-  const CheckOptions options = check_options(threads, memory, is_bonded);
+  CheckOptions options = check_options(threads, memory, is_bonded);
+  options.is_deformed_wanted = is_deformed_wanted;
   Watch watch(std::move(progress));
   const plan::Cascade found = without_gil(watch, [&] {
     return find_cascade(*structure, options,

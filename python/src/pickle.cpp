@@ -193,9 +193,15 @@ void visit_optional(Archive& archive, std::optional<Value>& value) {
 }
 
 template <class Archive>
+void visit(Archive& archive, large::Branch& branch) {
+  archive(branch.end, branch.modules, branch.points, branch.last);
+  visit_optional(archive, branch.rest);
+}
+
+template <class Archive>
 void visit(Archive& archive, large::Path& path) {
   archive(path.outcome, path.critical, path.events, path.points, path.last, path.step_count,
-          path.solve_count);
+          path.solve_count, path.behind);
   visit_optional(archive, path.loaded);
 }
 

@@ -182,8 +182,14 @@ def test_a_column_of_two_buckles_where_it_does_by_hand():
     assert found['factor_critical'] == pytest.approx(1.1067, rel=3e-3)
     assert found['path'].shape[1] == 3 and (np.diff(found['path'][:, 0]) > 0).all()
     assert column.check(deformed=True, up_to=1).deformed['factor_critical'] is None
+    behind = column.check(deformed=True, up_to=1.2, follow=True).deformed['behind']
+    assert len(behind) == 2 and behind[0]['end'] == 'up_to'
+    assert behind[0]['path'].shape[1] == 4
+    assert behind[0]['path'][-1, 0] == pytest.approx(1.2, abs=1e-3)
     with pytest.raises(holdfast.Error, match='do not go together'):
         column.check(deformed=True, proof=True)
+    with pytest.raises(holdfast.Error, match='follow requires deformed'):
+        column.check(follow=True)
     with pytest.raises((holdfast.Error, ValueError), match='up_to'):
         column.check(deformed=True, up_to=0)
 

@@ -73,8 +73,32 @@ expect_line arm.svg 'falls after the break'
 expect_line arm_report.json '"outcome": ?"stands"'
 expect_exit 0 check cube.json --cascade
 expect_line out '^  cascade     nothing breaks and nothing falls$'
-expect_usage '^holdfast check: --deformed and --cascade exclude each other$' \
-  check a --cascade --deformed
+expect_exit 1 check arm.json --cascade --deformed
+expect_line out '^  cascade     breaks in 1 round; 5 of 6 modules fall$'
+
+# And after each loss: without its third connection the arm loses three modules, and holds.
+expect_exit 1 check arm.json --set strength_vertical_n=1e4 --set strength_lateral_n=1e4 \
+  --lose-one --lose connections --cascade --json losses.json
+expect_line out 'without \(2,0,0\)-\(3,0,0\): 3 modules fall; then 3 modules fall in 1 round$'
+expect_line losses.json '"outcome": ?"stands"'
+
+# A column that buckles, and what is behind: on both sides it holds, at once or not at all.
+cat >column.json <<'END'
+{"format": "holdfast-structure", "version": 1, "support_z": -1,
+ "material": {"elastic_modulus_mpa": 0.12},
+ "modules": [{"cell": [0, 0, 0], "fixed": true}, [0, 0, 1], [0, 0, 2], [0, 0, 3], [0, 0, 4],
+             [0, 0, 5]]}
+END
+expect_exit 0 check column.json --deformed --follow --vtk path.pvd --json followed.json
+expect_line out 'behind it, one way: holds at 2\.0000 times these loads, moved by 237 mm'
+expect_line out 'behind it, the other way: holds at 2\.0000 times'
+expect_line followed.json '"end": ?"up_to"'
+expect_line path.pvd 'timestep="20" part="0" file="path_20\.vtu"'
+expect_exit 1 check column.json --deformed --set elastic_modulus_mpa=0.09 --cascade
+expect_line out '^  cascade     undecided after 0 rounds: no module falls by then$'
+expect_usage '^holdfast check: --follow requires --deformed$' check a --follow
+expect_exit 64 check column.json --deformed --vtk path.pvd --json path_1.vtu
+expect_exit 64 check column.json --deformed --vtk -.pvd --csv ./-_3.vtu
 
 [ "$faults" -eq 0 ] || exit 1
 echo "failures: all as expected"

@@ -11,6 +11,7 @@
 #include "figure.hpp"
 #include "file_clash.hpp"
 #include "holdfast/cascade.hpp"
+#include "holdfast/deformed_series.hpp"
 #include "holdfast/trial.hpp"
 #include "lose_one_options.hpp"
 #include "page.hpp"
@@ -42,6 +43,7 @@ struct CheckArguments {
   bool are_remedies_wanted = false;
   bool is_deformed_wanted = false;
   double factor_max = large::Options{}.factor_max;
+  bool is_followed_behind = false;
   ScatterOptions scatter;
   LoseOneArguments lose_one;
   bool is_cascade_wanted = false;
@@ -51,10 +53,16 @@ struct CheckArguments {
 
   /// The files to be written, each with its option.
   Outputs outputs() const {
-    return {{"--json", json, FileFormat::kJson},         {"--csv", csv, FileFormat::kCsv},
-            {"--svg", figure.path, FileFormat::kFigure}, {"--vtk", vtk, FileFormat::kVtu},
-            {"--html", html, FileFormat::kHtml},         {"--certificate", certificate}};
+    return {{"--json", json, FileFormat::kJson},
+            {"--csv", csv, FileFormat::kCsv},
+            {"--svg", figure.path, FileFormat::kFigure},
+            {"--vtk", vtk, writes_series() ? FileFormat::kPvd : FileFormat::kVtu},
+            {"--html", html, FileFormat::kHtml},
+            {"--certificate", certificate}};
   }
+
+  /// Whether --vtk is the whole path of the deformed shape.
+  bool writes_series() const { return is_deformed_wanted && has_ending(vtk, ".pvd"); }
 };
 
 /// Goes through the files of one run and keeps count.
@@ -106,7 +114,7 @@ class CheckRun {
       structure.document.modules = std::vector<io::ModuleEntry>();
     }
     const CheckOptions how = check_options(structure, file);
-    const CheckResult result = check(structure, how);
+    const CheckResult result = check_with_series(structure, how);
     const auto remedies = seek_remedies(structure, result, how, file);
     const MoreAnswers more = find_more(structure, result, how, scatter, file);
     ++counts_[static_cast<std::size_t>(result.assessment.verdict)];
@@ -126,6 +134,21 @@ class CheckRun {
                         });
     });
     write_files(structure, result, more);
+  }
+
+  /// Checks, and writes the path of the deformed shape meanwhile, if that is wanted.
+  CheckResult check_with_series(const Structure& structure, CheckOptions how) {
+    if (!options_.writes_series()) {
+      return check(structure, how);
+    }
+    DeformedSeries series(options_.vtk, structure, how);
+    how.on_deformed_state = series.writer();
+    CheckResult result = check(structure, how);
+    if (const auto error = series.finish()) {
+      ++bad_count_;
+      print_error(*error, options_.vtk);
+    }
+    return result;
   }
 
   /// Refuses options that are for robots of one piece.
@@ -179,6 +202,7 @@ class CheckRun {
     if (options_.lose_one.is_wanted) {
       LoseOneOptions options = lose_one_options(options_.lose_one, how);
       options.progress = counting(file, "part");
+      options.is_cascade_wanted = options_.is_cascade_wanted;
       const plan::LossReport report = lose_one(structure, options);
       count_exit(exit_code_of(report));
       more.text += lose_one_text(report);
@@ -233,7 +257,7 @@ class CheckRun {
                               : picture_svg(structure, result, figure);
         });
     bad_count_ += is_drawn ? 0 : 1;
-    if (!options_.vtk.empty()) {
+    if (!options_.vtk.empty() && !options_.writes_series()) {
       write(options_.vtk, [&](std::ostream& out) {
         write_picture_vtu(out, structure, result, report_options(options_.vtk));
       });
@@ -366,6 +390,7 @@ class CheckRun {
         .is_limit_wanted = options_.is_limit_wanted,
         .is_deformed_wanted = options_.is_deformed_wanted,
         .factor_max = options_.factor_max,
+        .is_followed_behind = options_.is_followed_behind,
         .limit_seconds_max = options_.limit_seconds};
     if (!options_.is_quiet) {
       options.progress = [this, &structure, file](int iteration, double error) {
@@ -425,6 +450,10 @@ int run(CheckArguments options) {
   if (complain_of_outputs(options.files, options.outputs())) {
     return kExitUsage;
   }
+  const std::array others = {options.files.front(), options.json, options.csv, options.figure.path};
+  if (options.writes_series() && complain_of_series(options.vtk, others)) {
+    return kExitUsage;
+  }
   return CheckRun(options).run();
 }
 
@@ -445,6 +474,11 @@ void add_deformed(CLI::App& command, CheckArguments& options) {
       ->check(number_between(1.0, 1000.0))
       ->needs(deformed)
       ->capture_default_str();
+  command
+      .add_flag("--follow", options.is_followed_behind,
+                "Go on behind the first loss of stability, for what holds there; no verdict "
+                "changes")
+      ->needs(deformed);
 }
 
 }  // namespace
@@ -463,7 +497,8 @@ Command add_check(CLI::App& app) {
   add_output(*command, "--csv", options->csv,
              "Write a table, a line for each connection with its loads");
   add_figure(*command, options->figure, "Draw the structure and its loads");
-  add_output(*command, "--vtk", options->vtk, "Write a .vtu file for ParaView");
+  add_output(*command, "--vtk", options->vtk,
+             "Write a .vtu file for ParaView; with --deformed and a .pvd name the whole path");
   add_output(*command, "--html", options->html,
              "Write a page to look at in a browser, with the report");
   add_output(*command, "--certificate", options->certificate,
@@ -487,11 +522,9 @@ Command add_check(CLI::App& app) {
   add_deformed(*command, *options);
   add_scatter_options(*command, options->scatter);
   add_lose_one_options(*command, options->lose_one);
-  command
-      ->add_flag("--cascade", options->is_cascade_wanted,
-                 "Say what follows the break: which connections break one after another, and which "
-                 "modules fall")
-      ->excludes("--deformed");
+  command->add_flag("--cascade", options->is_cascade_wanted,
+                    "Say what follows the break: which connections break one after another, and "
+                    "which modules fall; with --lose-one also after each fatal loss");
   add_quiet(*command, options->is_quiet);
   command->add_flag("--bonded", options->is_bonded,
                     "Treat the ground as glued: supports can neither lift nor tilt");

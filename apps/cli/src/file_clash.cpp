@@ -72,6 +72,20 @@ struct Entry {
   bool is_standard = false;
 };
 
+/// Whether a file may be one of the series: STEM_3.vtu or STEM_3_1.vtu beside STEM.pvd.
+bool is_in_series(const std::filesystem::path& file, const std::filesystem::path& series) {
+  const auto folder = [](const std::filesystem::path& path) {
+    std::error_code ignored;
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(path).parent_path(),
+                                             ignored);
+  };
+  const std::string name = file.filename().string();
+  const std::string begin = series.stem().string() + "_";
+  return name.starts_with(begin) && name.ends_with(".vtu") &&
+         name.find_first_not_of("0123456789_", begin.size()) == name.size() - 4 &&
+         folder(file) == folder(series);
+}
+
 bool clash(const Entry& a, const Entry& b) {
   return (a.is_standard && b.is_standard) ||
          (are_one(a.identity, b.identity) && a.identity.is_file());
@@ -136,6 +150,20 @@ bool complain_of_outputs(std::span<const std::string> inputs, const Outputs& out
     fmt::print(stderr, "holdfast: {}\n", io::one_line(*fault));
   }
   return fault.has_value();
+}
+
+bool complain_of_series(const std::string& series, std::span<const std::string> others) {
+  if (series == "-") {
+    fmt::print(stderr, "holdfast: --vtk -: a series is several files; expected a name\n");
+    return true;
+  }
+  const auto clashing = std::ranges::find_if(
+      others, [&](const std::string& file) { return is_in_series(file, series); });
+  if (clashing != others.end()) {
+    fmt::print(stderr, "holdfast: {}: --vtk {} may write a file of this name\n",
+               io::one_line(*clashing), io::one_line(series));
+  }
+  return clashing != others.end();
 }
 
 bool leaves_standard_output(const Outputs& outputs) {

@@ -153,26 +153,8 @@ int run_certificate(const StepsArguments& options) {
   return kExitSafe;
 }
 
-/// Whether a file may be one of the series: STEM_3.vtu or STEM_3_1.vtu beside STEM.pvd.
-bool is_in_series(const std::filesystem::path& file, const std::filesystem::path& series) {
-  const auto folder = [](const std::filesystem::path& path) {
-    std::error_code ignored;
-    return std::filesystem::weakly_canonical(std::filesystem::absolute(path).parent_path(),
-                                             ignored);
-  };
-  const std::string name = file.filename().string();
-  const std::string begin = series.stem().string() + "_";
-  return name.starts_with(begin) && name.ends_with(".vtu") &&
-         name.find_first_not_of("0123456789_", begin.size()) == name.size() - 4 &&
-         folder(file) == folder(series);
-}
-
 /// A series is several files, which must not be the input, nor one another output.
-bool complain_of_series(const StepsArguments& options) {
-  if (options.vtk == "-") {
-    fmt::print(stderr, "holdfast: --vtk -: a series is several files; expected a name\n");
-    return true;
-  }
+bool complain_of_steps_series(const StepsArguments& options) {
   if (options.vtk.ends_with(".vtu")) {
     fmt::print(
         stderr,
@@ -181,15 +163,9 @@ bool complain_of_series(const StepsArguments& options) {
         io::one_line(options.vtk));
     return true;
   }
-  for (const std::string& file :
-       {options.file, options.json, options.csv, options.figure.path, options.html}) {
-    if (!options.vtk.empty() && is_in_series(file, options.vtk)) {
-      fmt::print(stderr, "holdfast: {}: --vtk {} may write a file of this name\n",
-                 io::one_line(file), io::one_line(options.vtk));
-      return true;
-    }
-  }
-  return false;
+  const std::array others = {options.file, options.json, options.csv, options.figure.path,
+                             options.html};
+  return !options.vtk.empty() && complain_of_series(options.vtk, others);
 }
 
 int run(const StepsArguments& options) {
@@ -209,7 +185,7 @@ int run(const StepsArguments& options) {
     return kExitUsage;
   }
   const std::vector<std::string> inputs = {options.file};
-  if (complain_of_series(options) || complain_of_outputs(inputs, options.outputs())) {
+  if (complain_of_steps_series(options) || complain_of_outputs(inputs, options.outputs())) {
     return kExitUsage;
   }
   const auto file = load_steps_with_notes(options.file, options.reading);

@@ -220,6 +220,8 @@ CheckResult check(const model::Robot& robot, const CheckOptions& options) {
                                  {.factor_max = options.factor_max,
                                   .obstacles = options.obstacles,
                                   .is_bonded = options.is_bonded,
+                                  .is_followed_behind = options.is_followed_behind,
+                                  .on_state = options.on_deformed_state,
                                   .memory_bytes_max = options.memory_bytes_max,
                                   .thread_count = options.thread_count});
     result.is_deformed = true;
@@ -307,8 +309,15 @@ std::string picture_vtu(const Structure& structure, const CheckResult& result) {
 
 void write_picture_vtu(std::ostream& out, const Structure& structure, const CheckResult& result,
                        const io::WriteOptions& options) {
-  io::write_vtu(out, structure.robot, result.assessment, options,
-                structure.document.extension.obstacles);
+  const std::vector<model::Obstacle>& obstacles = structure.document.extension.obstacles;
+  if (result.deformed && !result.deformed->last.poses.empty()) {
+    const large::Path& path = *result.deformed;
+    io::write_deformed_vtu(out, structure.robot, result.assessment,
+                           path.loaded ? path.loaded->factor : path.last.factor, options,
+                           obstacles);
+    return;
+  }
+  io::write_vtu(out, structure.robot, result.assessment, options, obstacles);
 }
 
 void write_connections_csv(std::ostream& out, const Structure& structure, const CheckResult& result,

@@ -13,6 +13,7 @@
 
 #include "holdfast/host/text.hpp"
 #include "plan_page.hpp"
+#include "series/series_files.hpp"
 #include "step_walk.hpp"
 
 namespace holdfast {
@@ -154,48 +155,6 @@ base::Result<std::vector<DrawnState>> drawn_states(const StepsFile& file, const 
   return states;
 }
 
-/// Writes one state after another, and remembers what belongs into the .pvd file.
-class Series {
- public:
-  Series(std::filesystem::path path, const StepsOptions& options)
-      : path_(std::move(path)), options_(options) {}
-
-  /// The robots of one time.
-  std::optional<base::Error> add(std::size_t time, std::span<const model::RobotSpec> pieces) {
-    for (std::size_t part = 0; part < pieces.size(); ++part) {
-      const auto robot = model::Robot::create(pieces[part], options_.thread_count);
-      if (!robot) {
-        return robot.error();
-      }
-      std::string name = path_.stem().string() + "_" + std::to_string(time);
-      name += (pieces.size() > 1 ? "_" + std::to_string(part) : "") + ".vtu";
-      const CheckResult checked = check(
-          robot.value(),
-          {.thread_count = options_.thread_count, .memory_bytes_max = options_.memory_bytes_max});
-      const auto error = write_file(path_.parent_path() / name, [&](std::ostream& out) {
-        io::write_vtu(out, robot.value(), checked.assessment, {}, pieces[part].obstacles);
-      });
-      if (error) {
-        return error;
-      }
-      files_.push_back({.time = time, .part = part, .name = std::move(name)});
-    }
-    if (options_.progress && time > 0) {
-      options_.progress(time);
-    }
-    return std::nullopt;
-  }
-
-  std::optional<base::Error> finish() const {
-    return write_file(path_, [this](std::ostream& out) { io::write_pvd(out, files_); });
-  }
-
- private:
-  std::filesystem::path path_;
-  const StepsOptions& options_;
-  std::vector<io::SeriesFile> files_;
-};
-
 /// The states in a film strip: all of them, or some evenly spread, the first unsafe and the last.
 std::set<std::size_t> strip_states(const plan::SequenceJudgement& judged) {
   const std::size_t count = judged.steps.size();
@@ -214,19 +173,33 @@ std::set<std::size_t> strip_states(const plan::SequenceJudgement& judged) {
 
 std::optional<base::Error> write_steps_vtk(const std::filesystem::path& path, const StepsFile& file,
                                            const StepsResult& result, const StepsOptions& options) {
-  const std::string name = path.stem().string();
-  if (io::one_line(name) != name) {
-    return base::Error{.code = base::ErrorCode::kBadInput,
-                       .message =
-                           "names of .vtu files are written into the .pvd file, expected "
-                           "UTF-8 without control characters"};
+  SeriesFiles series(path);
+  if (auto fault = series.find_fault()) {
+    return fault;
   }
-  Series series(path, options);
-  const auto error = for_each_state(
-      file, result, [](std::size_t) { return true; },
-      [&](std::size_t time, std::span<const model::RobotSpec> pieces) {
-        return series.add(time, pieces);
+  const auto add = [&](std::size_t time, std::span<const model::RobotSpec> pieces) {
+    for (std::size_t part = 0; part < pieces.size(); ++part) {
+      const auto robot = model::Robot::create(pieces[part], options.thread_count);
+      if (!robot) {
+        return std::optional(robot.error());
+      }
+      const CheckResult checked = check(
+          robot.value(),
+          {.thread_count = options.thread_count, .memory_bytes_max = options.memory_bytes_max});
+      auto error = series.add(time, part, pieces.size(), [&](std::ostream& out) {
+        io::write_vtu(out, robot.value(), checked.assessment, {}, pieces[part].obstacles);
       });
+      if (error) {
+        return error;
+      }
+    }
+    if (options.progress && time > 0) {
+      options.progress(time);
+    }
+    return std::optional<base::Error>();
+  };
+  const auto error = for_each_state(
+      file, result, [](std::size_t) { return true; }, add);
   return error ? error : series.finish();
 }
 

@@ -183,6 +183,26 @@ TEST(Vtu, corners_follow_the_rotation_of_their_module) {
   }
 }
 
+TEST(Vtu, modules_turned_by_large_rotations_keep_their_size) {
+  // A quarter turn about +y takes (x, y, z) from the node to (z, y, -x).
+  const model::Robot robot = make(arm(1));
+  verdict::Assessment assessment = verdict::assess(robot);
+  assessment.equilibrium.displacement.back() = {3, -2, 1, 0, std::acos(-1.0) / 2, 0};
+  std::ostringstream out;
+  write_deformed_vtu(out, robot, assessment, 0.75);
+  const Grid grid(out.str());
+  EXPECT_NEAR(grid.numbers("load_factor").at(0), 0.75, 1e-9);
+  for (std::size_t corner = 0; corner < 8; ++corner) {
+    const auto place = grid.triple("Points", 16 + corner);
+    const auto move = grid.triple("displacement_mm", 16 + corner);
+    const double x = place[0] - kPitch;
+    const double z = place[2] - kPitch;
+    EXPECT_NEAR(place[0] + move[0], kPitch + 3 + z, 1e-6);
+    EXPECT_NEAR(move[1], -2, 1e-6);
+    EXPECT_NEAR(place[2] + move[2], kPitch + 1 - x, 1e-6);
+  }
+}
+
 TEST(Vtu, the_ground_carries_the_weight) {
   for (const std::uint64_t seed : {1U, 2U, 7U}) {
     const model::Robot robot = make(test::random_robot(seed));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace holdfast::large {
 namespace {
@@ -14,14 +15,15 @@ constexpr int kArcIterationMax = 15;
 /// The residual that is left, as a share of the largest load.
 constexpr double kArcResidual = 1e-9;
 
+/// The residual is not asked to be less than with so many times the loads.
+constexpr double kArcFactorMin = 1e-2;
+
 /// The first step, and the longest one: pitches and rad.
 constexpr double kArcFirst = 1e-4;
 constexpr double kArcLongest = 0.05;
 
 constexpr int kModeIterations = 12;
 
-/// The product of two vectors in which a pitch counts as much as 1 rad, and the whole robot as one
-/// module.
 double product(const System& system, const std::vector<Vec>& a, const std::vector<Vec>& b) {
   const double square = system.pitch() * system.pitch();
   double sum = 0;
@@ -33,11 +35,7 @@ double product(const System& system, const std::vector<Vec>& a, const std::vecto
   return sum / static_cast<double>(a.size());
 }
 
-/// A direction of the path: displacements and lambda, of length 1.
-struct Tangent {
-  std::vector<Vec> u;
-  double factor = 0;
-};
+}  // namespace
 
 double product(const System& system, const Tangent& a, const Tangent& b) {
   return product(system, a.u, b.u) + a.factor * b.factor;
@@ -52,7 +50,6 @@ void scale(Tangent& tangent, double factor) {
   tangent.factor *= factor;
 }
 
-/// The direction of the path at an equilibrium, on the side of `towards`.
 std::optional<Tangent> tangent_at(const System& system, const Found& found,
                                   const Tangent* towards) {
   if (found.direction.empty()) {
@@ -65,18 +62,22 @@ std::optional<Tangent> tangent_at(const System& system, const Found& found,
   return tangent;
 }
 
-/// Newton's method in the plane across the tangent, a step away from an equilibrium.
 std::optional<Configuration> correct(System& system, Configuration here, const Tangent& tangent,
-                                     double length) {
+                                     double length, std::vector<FacetStates>* tried) {
   system.move(here, tangent.u, length);
   here.factor += length * tangent.factor;
+  double last_size = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < kArcIterationMax; ++iteration) {
     system.look_up_facets(here);
     std::vector<Vec> rest = system.residual(here);
-    const Size size = size_of(rest);
-    const double tolerance = kArcResidual * std::abs(here.factor) * system.load_size();
-    if (std::max(size.translation, size.rotation / system.pitch()) <= tolerance) {
+    const Size parts = size_of(rest);
+    const double size = std::max(parts.translation, parts.rotation / system.pitch());
+    const double loads = std::max(std::abs(here.factor), kArcFactorMin) * system.load_size();
+    if (is_done(size, last_size, loads, kArcResidual)) {
       return here;
+    }
+    if (tried != nullptr && (tried->empty() || tried->back() != here.facets)) {
+      tried->push_back(here.facets);
     }
     if (!system.factor(here, false)) {
       return std::nullopt;
@@ -95,11 +96,10 @@ std::optional<Configuration> correct(System& system, Configuration here, const T
     }
     system.move(here, step, 1);
     here.factor += change;
+    last_size = size;
   }
   return std::nullopt;
 }
-
-}  // namespace
 
 Turn turn_at(System& system, const Found& from, double failed_at) {
   Turn turn;

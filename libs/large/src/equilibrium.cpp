@@ -137,10 +137,15 @@ bool release(System& system, Configuration& here) {
 
 }  // namespace
 
+bool is_done(double size, double last_size, double loads, double share) {
+  return size <= share * loads ||
+         (size >= kRoundingPace * last_size && size <= kRoundingResidual * loads);
+}
+
 std::optional<Configuration> converge(System& system, Configuration start,
                                       std::vector<FacetStates>* tried) {
   Configuration here = std::move(start);
-  const double tolerance = kResidual * std::abs(here.factor) * system.load_size();
+  const double loads = std::abs(here.factor) * system.load_size();
   double last_size = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < kIterationMax; ++iteration) {
     const bool is_changed = system.look_up_facets(here);
@@ -149,9 +154,7 @@ std::optional<Configuration> converge(System& system, Configuration start,
     if (!std::isfinite(size)) {
       return std::nullopt;
     }
-    const bool is_rounding = size >= kRoundingPace * last_size &&
-                             size <= kRoundingResidual * std::abs(here.factor) * system.load_size();
-    if ((size <= tolerance || is_rounding) && !(is_changed && iteration == 0)) {
+    if (is_done(size, last_size, loads, kResidual) && !(is_changed && iteration == 0)) {
       return here;
     }
     if (!system.factor(here, false)) {
@@ -186,18 +189,37 @@ Found examined(System& system, Configuration here) {
   return found;
 }
 
-bool is_lost_at_facets(System& system, const Configuration& here,
-                       const std::vector<FacetStates>& tried) {
+bool is_about_to_change(System& system, const Configuration& here, const FacetStates& states) {
   const double tolerance = kAboutToChange * std::abs(here.factor) * system.load_size();
-  return std::ranges::any_of(tried, [&](const FacetStates& facets) {
-    Configuration other = here;
-    other.facets = facets;
-    if (facets == here.facets ||
-        !(in_newton(size_of(system.residual(other)), system.pitch()) <= tolerance)) {
+  Configuration other = here;
+  other.facets = states;
+  return in_newton(size_of(system.residual(other)), system.pitch()) <= tolerance;
+}
+
+std::optional<FacetStates> find_tipping(System& system, const Configuration& here,
+                                        const std::vector<FacetStates>& tried) {
+  const auto found = std::ranges::find_if(tried, [&](const FacetStates& facets) {
+    if (facets == here.facets || !is_about_to_change(system, here, facets)) {
       return false;
     }
+    Configuration other = here;
+    other.facets = facets;
     return !system.factor(other, true) || !system.is_definite();
   });
+  return found != tried.end() ? std::optional(*found) : std::nullopt;
+}
+
+bool has_open_held_facets(const Configuration& here) {
+  return std::ranges::any_of(here.facets, is_to_be_released);
+}
+
+bool release_open(System& system, Configuration& here) {
+  while (has_open_held_facets(here)) {
+    if (!release(system, here)) {
+      return false;
+    }
+  }
+  return true;
 }
 
 Search advance(System& system, const Found& from, double factor) {
@@ -219,10 +241,8 @@ Search advance(System& system, const Found& from, double factor) {
   if (largest_way(from.here, *next) > way_max) {
     return {.failure = Failure::kJump};
   }
-  while (std::ranges::any_of(next->facets, is_to_be_released)) {
-    if (!release(system, *next)) {
-      return {.failure = Failure::kReleaseLost};
-    }
+  if (!release_open(system, *next)) {
+    return {.failure = Failure::kReleaseLost};
   }
   return {.found = examined(system, *std::move(next))};
 }

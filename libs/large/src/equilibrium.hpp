@@ -41,14 +41,28 @@ struct Search {
 std::optional<Configuration> converge(System& system, Configuration start,
                                       std::vector<FacetStates>* tried = nullptr);
 
+/// Whether an iteration is done with a residual, given that before it, as forces: it is at most
+/// `share` of the loads, or rounding leaves more.
+bool is_done(double size, double last_size, double loads, double share);
+
 /// Finds stability and direction of an equilibrium, for which residual() is asked once more.
 Found examined(System& system, Configuration here);
 
-/// Whether an equilibrium is where facets are about to go into one of the states that were tried,
-/// forces being the same, and is not stable in that: then there is none beyond, and the robot tips
-/// over these facets.
-bool is_lost_at_facets(System& system, const Configuration& here,
-                       const std::vector<FacetStates>& tried);
+/// Whether facets in other states have the same forces at an equilibrium.
+bool is_about_to_change(System& system, const Configuration& here, const FacetStates& states);
+
+/// The states, of those that were tried, which facets are about to go into, forces being the same,
+/// and in which the equilibrium is not stable: then there is none beyond, and the robot tips over
+/// these facets. None if there are no such.
+std::optional<FacetStates> find_tipping(System& system, const Configuration& here,
+                                        const std::vector<FacetStates>& tried);
+
+/// Whether facets are open, but still held sideways.
+bool has_open_held_facets(const Configuration& here);
+
+/// Releases them for good: their sideways forces go to none in steps. Returns whether equilibria
+/// are stable all the way; `here` is the last.
+bool release_open(System& system, Configuration& here);
 
 /// The equilibrium for another lambda, near that of `from`, open facets released for good: their
 /// sideways forces go to none in steps, over stable equilibria.

@@ -8,9 +8,8 @@
 #include <utility>
 
 #include "arc_length.hpp"
-#include "equilibrium.hpp"
+#include "behind.hpp"
 #include "holdfast/solver/equilibrium.hpp"
-#include "touching.hpp"
 
 namespace holdfast::large {
 namespace {
@@ -35,25 +34,15 @@ constexpr double kStartGamma = 1e-9;
 /// The motion without them may be so many times as large at most.
 constexpr double kStartGrowth = 10;
 
-/// An equilibrium, and what is watched there: an event has happened where its value is 0 or more.
-struct Stop {
-  Found found;
-  State state = {};
-  std::array<double, kEventKindCount> value{};
-  std::array<std::vector<std::size_t>, kEventKindCount> modules{};
-};
-
 class Follower {
  public:
   Follower(const model::Robot& robot, const Options& options, System& system)
-      : robot_(robot), options_(options), system_(system), bodies_(robot, options.obstacles) {}
+      : robot_(robot), options_(options), system_(system), watch_(system, options) {}
 
   Path run();
 
  private:
   std::optional<Found> start();
-  Stop stop_at(Found found);
-  std::vector<std::size_t> most_strained() const;
 
   /// The largest motion, pitches or rad.
   double way_of(const std::vector<Vec>& step) const {
@@ -65,7 +54,6 @@ class Follower {
     return kFactorResolution * std::max(here_.state.factor, first_step_);
   }
 
-  void watch(Stop& stop, EventKind kind, double value, std::vector<std::size_t> modules) const;
   void look_for_events(const Stop& from, const Stop& to);
   void find_event(std::size_t kind, const Stop& from, const Stop& to);
   void accept(Stop next);
@@ -76,11 +64,12 @@ class Follower {
   const model::Robot& robot_;
   const Options& options_;
   System& system_;
-  Bodies bodies_;
+  Watch watch_;
   Path path_;
   Stop here_;
   double step_ = kStepMaxFactor;
   double first_step_ = kStepMaxFactor;  ///< With which linear theory is not far off.
+  LossPlace loss_;
 };
 
 /// The linear solution by the exact contact law. Its open facets are released.
@@ -113,46 +102,6 @@ std::optional<Found> Follower::start() {
   return is_held ? std::optional(std::move(found)) : std::nullopt;
 }
 
-void Follower::watch(Stop& stop, EventKind kind, double value,
-                     std::vector<std::size_t> modules) const {
-  stop.value[static_cast<std::size_t>(kind)] = value;
-  stop.modules[static_cast<std::size_t>(kind)] = std::move(modules);
-}
-
-/// The ends of the connection with the largest strain at its facet's edge.
-std::vector<std::size_t> Follower::most_strained() const {
-  const auto connections = robot_.connections();
-  std::size_t most = 0;
-  for (std::size_t i = 1; i < connections.size(); ++i) {
-    most = system_.edge_strain(i) > system_.edge_strain(most) ? i : most;
-  }
-  if (connections.empty()) {
-    return {};
-  }
-  const model::Connection pair = connections[most];
-  return {base::at(pair.a), base::at(pair.b)};
-}
-
-/// All that is to be known of an equilibrium, found by examined() as the last.
-Stop Follower::stop_at(Found found) {
-  Stop stop;
-  stop.found = std::move(found);
-  stop.state = system_.state(stop.found.here);
-  const State& state = stop.state;
-  std::vector<std::size_t> ends;
-  if (state.worst) {
-    const model::Connection pair = robot_.connections()[*state.worst];
-    ends = {base::at(pair.a), base::at(pair.b)};
-  }
-  watch(stop, EventKind::kBreaks, state.worst ? state.load_ratio_max - 1 : -1, std::move(ends));
-  Gap floor = bodies_.above_floor(state.poses);
-  watch(stop, EventKind::kTouchesFloor, -floor.mm / system_.pitch(), std::move(floor.modules));
-  Gap modules = bodies_.between_bodies(state.poses);
-  watch(stop, EventKind::kTouchesItself, -modules.mm / system_.pitch(), std::move(modules.modules));
-  watch(stop, EventKind::kTooSoft, state.edge_strain_max - kStrainMax, most_strained());
-  return stop;
-}
-
 /// Finds each event that first happens between two equilibria.
 void Follower::look_for_events(const Stop& from, const Stop& to) {
   for (std::size_t kind = 0; kind < kEventKindCount; ++kind) {
@@ -182,7 +131,7 @@ void Follower::find_event(std::size_t kind, const Stop& from, const Stop& to) {
     if (!search.found) {
       break;
     }
-    const Stop middle = stop_at(*std::move(search.found));
+    const Stop middle = watch_.stop_at(*std::move(search.found));
     if (middle.value[kind] >= 0) {
       high = next;
       at_high = middle.value[kind];
@@ -212,6 +161,9 @@ void Follower::accept(Stop next) {
   path_.points.push_back({.factor = state.factor,
                           .load_ratio_max = state.load_ratio_max,
                           .displacement_max_mm = state.displacement_max_mm});
+  if (options_.on_state) {
+    options_.on_state(state, true, 0);
+  }
   if (state.factor == 1) {
     path_.loaded = state;
   }
@@ -233,6 +185,7 @@ void Follower::lose(const Found& from, double factor, Loss loss) {
     }
   }
   critical.is_by_facets =
+      loss_.tipping || loss_.lets_go ||
       std::ranges::any_of(from.here.facets, [](const solver::FacetState& facet) {
         return !facet.is_bonded && facet.state != mechanics::kStuck;
       });
@@ -247,7 +200,7 @@ void Follower::find_bifurcation(const Found& unstable) {
     const double middle = (here_.state.factor + high) / 2;
     Search search = advance(system_, here_.found, middle);
     if (search.found && search.found->is_stable) {
-      accept(stop_at(*std::move(search.found)));
+      accept(watch_.stop_at(*std::move(search.found)));
     } else {
       high = middle;
       loss = search.found ? Loss::kBifurcation : Loss::kLimit;
@@ -263,8 +216,11 @@ bool Follower::step_back(double failed_at, const Search& failed) {
     return true;
   }
   const double factor = here_.state.factor;
-  if (failed.failure == Failure::kReleaseLost ||
-      is_lost_at_facets(system_, here_.found.here, failed.tried)) {
+  loss_.lets_go = failed.failure == Failure::kReleaseLost;
+  if (!loss_.lets_go) {
+    loss_.tipping = find_tipping(system_, here_.found.here, failed.tried);
+  }
+  if (loss_.lets_go || loss_.tipping) {
     lose(here_.found, factor, Loss::kLimit);
     return false;
   }
@@ -274,7 +230,7 @@ bool Follower::step_back(double failed_at, const Search& failed) {
     return false;
   }
   if (turn.beyond && turn.beyond->is_stable) {
-    accept(stop_at(examined(system_, std::move(turn.beyond->here))));
+    accept(watch_.stop_at(examined(system_, std::move(turn.beyond->here))));
     step_ = 16 * resolution();
     return true;
   }
@@ -290,7 +246,7 @@ Path Follower::run() {
   const double way = way_of(begin->direction);
   first_step_ = way > kFirstWay / kStepMaxFactor ? kFirstWay / way : kStepMaxFactor;
   step_ = first_step_;
-  here_ = stop_at(*std::move(begin));
+  here_ = watch_.stop_at(*std::move(begin));
   path_.outcome = Outcome::kReached;
   const double last = options_.factor_max;
   while (path_.outcome == Outcome::kReached && here_.state.factor < last) {
@@ -306,7 +262,7 @@ Path Follower::run() {
     } else if (!search.found->is_stable) {
       find_bifurcation(*search.found);
     } else {
-      accept(stop_at(*std::move(search.found)));
+      accept(watch_.stop_at(*std::move(search.found)));
       step_ = std::min(2 * step_, kStepMaxFactor);
     }
   }
@@ -317,6 +273,10 @@ Path Follower::run() {
     return std::move(path_);
   }
   path_.last = here_.state;
+  if (path_.critical && options_.is_followed_behind) {
+    loss_.last = &here_;
+    follow_behind(system_, watch_, options_, loss_, path_);
+  }
   std::ranges::stable_sort(path_.events, {}, &Event::factor);
   return std::move(path_);
 }
@@ -329,6 +289,12 @@ const char* name(EventKind kind) {
 }
 
 const char* name(Loss loss) { return loss == Loss::kBifurcation ? "bifurcation" : "limit"; }
+
+const char* name(End end) {
+  constexpr std::array kNames = {"up_to",    "unloaded", "touches_floor", "touches_itself",
+                                 "too_soft", "lets_go",  "not_found",     "steps"};
+  return kNames[static_cast<std::size_t>(end)];
+}
 
 Path follow(const model::Robot& robot, const Options& options) {
   Path path;

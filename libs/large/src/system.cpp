@@ -241,6 +241,9 @@ bool System::factor(const Configuration& here, bool is_symmetric) {
   }
   add_facet_tangents(here, diagonal);
   for (std::size_t node = 0; node < diagonal.size(); ++node) {
+    for (int i = 0; i < 6; ++i) {
+      diagonal[node].at(i, i) += i < 3 ? shift_ / (pitch_ * pitch_) : shift_;
+    }
     lu_->set_diagonal(node, has_symmetry ? symmetric_part(diagonal[node]) : diagonal[node]);
   }
   return lu_->factor(thread_count_);

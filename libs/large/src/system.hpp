@@ -61,6 +61,10 @@ class System {
   /// part if that is asked for, or no torque makes a difference. Returns false if it is singular.
   bool factor(const Configuration& here, bool is_symmetric);
 
+  /// Stiffens each module in tangents that are factored from now on: by this share of the largest
+  /// load times the pitch, for a pitch or 1 rad.
+  void set_shift(double share) { shift_ = share * load_size_ * pitch_; }
+
   /// Whether the tangent that was factored, symmetric, is positive definite.
   bool is_definite() const { return lu_->is_positive_definite(); }
 
@@ -118,6 +122,7 @@ class System {
   std::vector<std::size_t> module_of_node_;
   std::vector<Vec> loads_;
   double load_size_ = 0;
+  double shift_ = 0;
   bool has_torques_ = false;
   std::vector<model::Connection> connections_;
   std::vector<mechanics::BeamDeformation> deformations_;

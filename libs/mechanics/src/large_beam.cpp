@@ -398,6 +398,33 @@ EndTangent LargeBeam::geometric_stiffness(const Vec6<double>& stress) const {
   return result;
 }
 
+/// The gradient of s . e2, the strains of second order under the stresses, with m, psi and rho the
+/// mean turn, its difference and the strains of first order, f and M the two halves of s:
+///   s . e2 = f . m x (m x a0) / 2 + f . psi x (psi x a0) / 24 + f . m x rho + M . m x psi / 2
+///            + 3/5 s3 rho_t^2 / L
+EndForces LargeBeam::geometric_forces(const Vec6<double>& stress, const Vec6<double>& u_p,
+                                      const Vec6<double>& u_q) const {
+  const Vector3 w_p = to_local(axes_, lower(u_p));
+  const Vector3 w_q = to_local(axes_, lower(u_q));
+  const Vector3 m = scaled(0.5, sum_of(w_p, 1, w_q));
+  const Vector3 psi = sum_of(w_q, -1, w_p);
+  const Vector3 a0 = {0, 0, -length_};
+  const Vector3 rho = sum_of(to_local(axes_, sum_of(upper(u_q), -1, upper(u_p))), -1, cross(m, a0));
+  const Vector3 f = upper(stress);
+  const Vector3 moment = lower(stress);
+  const auto twice = [&](const Vector3& w) {  // The gradient of f . w x (w x a0).
+    return sum_of(sum_of(scaled(dot(w, f), a0), dot(w, a0), f), -2 * dot(a0, f), w);
+  };
+  const double bowed = 1.2 * stress[2] / length_;
+  const Vector3 by_rho = sum_of(cross(f, m), bowed, Vector3{rho[0], rho[1], 0});
+  const Vector3 by_psi = sum_of(scaled(1.0 / 24, twice(psi)), 0.5, cross(moment, m));
+  Vector3 by_m = sum_of(scaled(0.5, twice(m)), 1, cross(rho, f));
+  by_m = sum_of(sum_of(by_m, 0.5, cross(psi, moment)), 1, cross(by_rho, a0));
+  const Vector3 force = to_global(axes_, by_rho);
+  return {.p = joined(scaled(-1, force), to_global(axes_, sum_of(scaled(0.5, by_m), -1, by_psi))),
+          .q = joined(force, to_global(axes_, sum_of(scaled(0.5, by_m), 1, by_psi)))};
+}
+
 Vec6<double> LargeBeam::second_order_stress(const Vec6<double>& u_p,
                                             const Vec6<double>& u_q) const {
   const SecondOrderMotion motion = second_order_motion(axes_, length_, u_p, u_q);

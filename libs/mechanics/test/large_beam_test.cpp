@@ -346,6 +346,28 @@ TEST(large_beam, has_the_geometric_stiffness_of_fixed_stresses) {
   });
 }
 
+TEST(large_beam, has_the_forces_of_its_geometric_stiffness_without_making_it) {
+  base::Rng rng(12);
+  for_each_beam([&](const LargeBeam& beam, const LatticeBeam<double>&, Direction) {
+    Vec6<double> stress{};
+    for (double& s : stress) {
+      s = random_signed(rng);
+    }
+    const Vec6<double> u_p = random_step(rng, 1, 0.1);
+    const Vec6<double> u_q = random_step(rng, 1, 0.1);
+    const EndTangent matrix = beam.geometric_stiffness(stress);
+    const EndForces found = beam.geometric_forces(stress, u_p, u_q);
+    auto at_p = base::multiply(matrix.pp, u_p);
+    base::add_to(at_p, base::multiply(matrix.pq, u_q));
+    auto at_q = base::multiply(matrix.qp, u_p);
+    base::add_to(at_q, base::multiply(matrix.qq, u_q));
+    for (std::size_t i = 0; i < 6; ++i) {
+      EXPECT_NEAR(found.p[i], at_p[i], 1e-13 * beam.length());
+      EXPECT_NEAR(found.q[i], at_q[i], 1e-13 * beam.length());
+    }
+  });
+}
+
 // Hermite's cubics: N/(30 L) [36, 3 L, -36, 3 L; 3 L, 4 L^2, -3 L, -L^2; ...] [Przemieniecki 1968].
 TEST(large_beam, has_the_consistent_geometric_stiffness_of_an_axial_force) {
   const LargeBeam beam = large_beam(base::kCubic, Direction::kMinusZ);  // z' is z, x' is x.

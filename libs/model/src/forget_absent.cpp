@@ -41,7 +41,8 @@ void forget_absent_pairs(RobotSpec& spec) {
 
 void forget_absent(RobotSpec& spec) {
   if (spec.fixed.empty() && spec.released.empty() && spec.own_kinds.empty() &&
-      spec.own_masses.empty() && spec.own_connectors.empty() && spec.payloads.empty()) {
+      spec.own_masses.empty() && spec.own_connectors.empty() && spec.payloads.empty() &&
+      spec.lost_facets.empty()) {
     return;
   }
   const Absence is_absent(spec);
@@ -51,6 +52,7 @@ void forget_absent(RobotSpec& spec) {
   std::erase_if(spec.own_kinds, is_of_absent);
   std::erase_if(spec.own_masses, is_of_absent);
   std::erase_if(spec.payloads, is_of_absent);
+  std::erase_if(spec.lost_facets, is_of_absent);
 }
 
 }  // namespace holdfast::model

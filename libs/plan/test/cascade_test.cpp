@@ -13,6 +13,7 @@
 #include <set>
 
 #include "general_robot.hpp"
+#include "holdfast/plan/losses.hpp"
 #include "seeds.hpp"
 
 namespace holdfast::plan {
@@ -129,15 +130,13 @@ struct Counts {
   int falls = 0;
 };
 
-void compare(const RobotSpec& spec, Counts& counts) {
-  const auto found = find_cascade(spec, {.equilibrium = {.thread_count = 1}});
-  ASSERT_TRUE(found) << found.error().message;
-  const Cascade& cascade = found.value();
+/// What is left, round by round, against deleting by hand from `rest` on.
+void compare(const Cascade& cascade, Rest rest, std::size_t first, Counts& counts) {
   if (cascade.outcome == CascadeOutcome::kUndecided) {
     return;
   }
-  Rest rest = rest_of(spec);
-  for (const CascadeRound& round : cascade.rounds) {
+  for (std::size_t i = first; i < cascade.rounds.size(); ++i) {
+    const CascadeRound& round = cascade.rounds[i];
     const CascadeRound expected = delete_by_hand(rest);
     EXPECT_EQ(pairs_of(round), pairs_of(expected));
     EXPECT_EQ(std::set(round.fallen.begin(), round.fallen.end()),
@@ -153,6 +152,82 @@ void compare(const RobotSpec& spec, Counts& counts) {
   counts.longest = std::max(counts.longest, static_cast<int>(cascade.rounds.size()));
   counts.stands += cascade.outcome == CascadeOutcome::kStands ? 1 : 0;
   counts.falls += cascade.outcome == CascadeOutcome::kFalls ? 1 : 0;
+}
+
+void compare(const RobotSpec& spec, Counts& counts) {
+  const auto found = find_cascade(spec, {.equilibrium = {.thread_count = 1}});
+  ASSERT_TRUE(found) << found.error().message;
+  compare(found.value(), rest_of(spec), 0, counts);
+}
+
+/// The robot without a part, and what falls at once.
+Rest without(const RobotSpec& spec, const Loss& loss, std::set<Cell>& fallen) {
+  Rest rest = rest_of(spec);
+  if (loss.kind == LossKind::kConnection) {
+    rest.gone.insert(in_order(loss.cells[0], loss.cells[1]));
+  } else if (loss.kind == LossKind::kModule) {
+    rest.cells.erase(loss.cells[0]);
+  } else if (loss.direction) {
+    rest.spec.lost_facets.push_back({loss.cells[0], *loss.direction});
+  } else {
+    std::erase(rest.spec.fixed, loss.cells[0]);
+  }
+  for (const Cells& piece : pieces_of(rest)) {
+    if (!robot_of(rest, piece)) {
+      fallen.insert(piece.begin(), piece.end());
+    }
+  }
+  for (const Cell& cell : fallen) {
+    rest.cells.erase(cell);
+  }
+  return rest;
+}
+
+TEST(Cascade, after_a_loss_is_what_deleting_by_hand_and_checking_anew_gives) {
+  Counts counts;
+  std::size_t fatal_count = 0;
+  for (const base::Lattice& lattice : test::kLattices) {
+    for (std::uint64_t seed = 100; seed < 100 + test::campaign(12U); ++seed) {
+      SCOPED_TRACE(seed);
+      RobotSpec spec = test::general_robot(lattice, seed);
+      const auto robot = model::Robot::create(spec, 1);
+      ASSERT_TRUE(robot);
+      const auto ratio = verdict::assess(robot.value(), {.thread_count = 1}).load_ratio_max;
+      if (!ratio || *ratio <= 0) {
+        continue;
+      }
+      spec = test::with_strengths_times(spec, *ratio * 1.2);
+      const LossReport report =
+          lose_each(spec, {.equilibrium = {.thread_count = 1}, .is_cascade_wanted = true});
+      for (const LossAnswer& answer : report.fatal) {
+        ASSERT_TRUE(answer.after);
+        ++fatal_count;
+        const auto found =
+            find_cascade_after(spec, answer.loss, {.equilibrium = {.thread_count = 1}});
+        ASSERT_TRUE(found) << found.error().message;
+        const Cascade& cascade = found.value();
+        EXPECT_EQ(answer.after->outcome, cascade.outcome);
+        EXPECT_EQ(answer.after->round_count, cascade.rounds.size());
+        EXPECT_EQ(answer.after->broken_count, cascade.broken_count());
+        EXPECT_EQ(answer.after->fallen_count, cascade.fallen_count());
+        EXPECT_GE(cascade.fallen_count(), answer.fallen_count);
+        std::set<Cell> at_once;
+        const Rest rest = without(spec, answer.loss, at_once);
+        EXPECT_EQ(at_once.size(), answer.fallen_count);
+        if (!at_once.empty()) {
+          ASSERT_FALSE(cascade.rounds.empty());
+          const Cells& first = cascade.rounds.front().fallen;
+          EXPECT_EQ(std::set(first.begin(), first.end()), at_once);
+          EXPECT_TRUE(cascade.rounds.front().broken.empty());
+        }
+        compare(cascade, rest, at_once.empty() ? 0 : 1, counts);
+      }
+    }
+  }
+  EXPECT_GE(fatal_count, test::least(100U));
+  EXPECT_GE(counts.longest, 2);
+  EXPECT_GE(counts.stands, 1);
+  EXPECT_GE(counts.falls, 1);
 }
 
 TEST(Cascade, is_what_deleting_by_hand_and_checking_anew_gives) {
@@ -210,6 +285,87 @@ TEST(Cascade, breaks_one_hanger_after_the_other) {
   EXPECT_NEAR(cascade.rounds[1].broken[0].load_ratio, 5.0 / 4, 1e-6);
   EXPECT_EQ(cascade.rounds[1].fallen.size(), 5U);
   EXPECT_EQ(cascade.standing, (Cells{{0, 0, 3}, {2, 0, 3}}));
+}
+
+/// An arm of five beside a fixed module.
+RobotSpec arm_of_five(double modulus_mpa) {
+  RobotSpec spec{.fixed = {{0, 0, 0}}, .support_z = {}};
+  for (int i = 0; i <= 5; ++i) {
+    spec.existing.push_back({i, 0, 0});
+  }
+  spec.material.elastic_modulus_mpa = modulus_mpa;
+  spec.is_modulus_stated = true;
+  return spec;
+}
+
+// Bent, its levers are shorter: load ratios 1.0003 and 0.945 by an independent program.
+TEST(Cascade, is_none_in_the_deformed_shape_where_bending_saves_an_arm) {
+  const CascadeOptions bent{.equilibrium = {.thread_count = 1}, .is_deformed = true};
+  const auto stiff = find_cascade(arm_of_five(100), bent);
+  ASSERT_TRUE(stiff);
+  EXPECT_EQ(stiff.value().outcome, CascadeOutcome::kStands);
+  EXPECT_EQ(stiff.value().fallen_count(), 5U);
+  const auto soft = find_cascade(arm_of_five(0.2), bent);
+  ASSERT_TRUE(soft);
+  EXPECT_EQ(soft.value().outcome, CascadeOutcome::kHolds);
+}
+
+// A thin column of 0.05 MPa and six modules has a buckling factor of 7.837 / 12 E L^2 / (W n^3), a
+// half. It may lean and hold; one that tips over its foot does not.
+TEST(Cascade, is_undecided_in_the_deformed_shape_where_a_piece_buckles) {
+  RobotSpec spec{.fixed = {{0, 0, 0}}, .support_z = {}};
+  for (int i = 0; i <= 6; ++i) {
+    spec.existing.push_back({0, 0, i});
+  }
+  spec.material.elastic_modulus_mpa = 0.05;
+  const CascadeOptions bent{.equilibrium = {.thread_count = 1}, .is_deformed = true};
+  const auto found = find_cascade(spec, bent);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found.value().outcome, CascadeOutcome::kUndecided);
+  ASSERT_FALSE(found.value().reasons.empty());
+  EXPECT_EQ(found.value().reasons.front().reason.code, verdict::ReasonCode::kBuckles);
+  spec.fixed = {};
+  spec.support_z = 0;
+  spec.material.elastic_modulus_mpa = 0.3;
+  const double weight = 7 * model::module_weight_n(spec.material);
+  spec.payloads = {{.cell = {0, 0, 6}, .force_n = {0.07 * weight, 0, 0}}};
+  const auto tips = find_cascade(spec, bent);
+  ASSERT_TRUE(tips);
+  EXPECT_EQ(tips.value().outcome, CascadeOutcome::kFalls);
+  const LossReport losses =
+      lose_each(spec, {.equilibrium = {.thread_count = 1}, .is_deformed = true});
+  EXPECT_EQ(losses.whole.verdict, Verdict::kUnstable);
+}
+
+// What hardly bends breaks, falls and stands as by linear theory.
+TEST(Cascade, of_stiff_robots_is_the_same_in_the_deformed_shape) {
+  std::size_t round_count = 0;
+  for (const base::Lattice& lattice : test::kLattices) {
+    for (std::uint64_t seed = 0; seed < test::campaign(25U); ++seed) {
+      RobotSpec spec = test::general_robot(lattice, seed);
+      spec.material.elastic_modulus_mpa = 1e6;
+      const auto robot = model::Robot::create(spec, 1);
+      ASSERT_TRUE(robot);
+      CascadeOptions options{.equilibrium = {.is_bonded = true, .thread_count = 1}};
+      const auto ratio = verdict::assess(robot.value(), options.equilibrium).load_ratio_max;
+      if (!ratio || *ratio <= 0) {
+        continue;
+      }
+      spec = test::with_strengths_times(spec, *ratio * 0.7);
+      const auto linear = find_cascade(spec, options);
+      options.is_deformed = true;
+      const auto bent = find_cascade(spec, options);
+      ASSERT_TRUE(linear && bent);
+      if (linear.value().outcome == CascadeOutcome::kUndecided ||
+          bent.value().outcome == CascadeOutcome::kUndecided) {
+        continue;
+      }
+      EXPECT_EQ(bent.value().standing, linear.value().standing) << seed;
+      EXPECT_EQ(bent.value().broken_count(), linear.value().broken_count()) << seed;
+      round_count += bent.value().rounds.size();
+    }
+  }
+  EXPECT_GE(round_count, test::least(50U));
 }
 
 TEST(Cascade, is_none_where_nothing_breaks) {

@@ -77,10 +77,7 @@ std::unique_ptr<DirectSystem> SystemChoice::make_direct_beside() const {
   }
   EquilibriumOptions options = options_;
   options.fill_max = std::min(options.fill_max, kBesideFillMax);
-  std::unique_ptr<DirectSystem> direct = DirectSystem::make(robot_, options);
-  const bool is_affordable =
-      direct && direct->factors().factor_product_count() <= kBesideProductMax * count;
-  return is_affordable ? std::move(direct) : nullptr;
+  return DirectSystem::make(robot_, options, kBesideProductMax * count);
 }
 
 bool SystemChoice::try_next() {

@@ -276,4 +276,18 @@ Deformed assess_deformed(const model::Robot& robot, Assessment linear,
   return deformed;
 }
 
+Assessment assess_state(const model::Robot& robot, const State& state, bool is_stable,
+                        bool is_bonded) {
+  Assessment assessment;
+  assessment.is_stable = is_stable;
+  assessment.contact_model = is_bonded ? ContactModel::kBonded : ContactModel::kUnilateral;
+  take_equilibrium(state, assessment);
+  take_connections(robot, state, assessment);
+  take_gaps(robot, state, assessment);
+  assessment.verdict = !is_stable                   ? Verdict::kUnstable
+                       : !assessment.broken.empty() ? Verdict::kOverload
+                                                    : Verdict::kSafe;
+  return assessment;
+}
+
 }  // namespace holdfast::verdict

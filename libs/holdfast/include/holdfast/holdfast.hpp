@@ -112,6 +112,10 @@ struct CheckOptions {
   /// judges the robot by them. Not together with a proof.
   bool is_deformed_wanted = false;
   double factor_max = large::Options{}.factor_max;
+  /// Goes on behind the first loss of stability; that changes no verdict.
+  bool is_followed_behind = false;
+  /// A function that is called with each equilibrium in the deformed shape; large::Options.
+  std::function<void(const large::State& state, bool is_stable, int branch)> on_deformed_state = {};
   /// What modules may meet as the robot bends; check() of a structure takes the file's.
   std::span<const model::Obstacle> obstacles = {};
   double limit_seconds_max = limit::LimitOptions{}.seconds_max;

@@ -18,7 +18,8 @@
 namespace holdfast {
 
 struct LoseOneOptions {
-  CheckOptions check = {};
+  CheckOptions check = {};         ///< In the deformed shape, if that is wanted.
+  bool is_cascade_wanted = false;  ///< Finds what follows each fatal loss.
   /// The parts that are lost, by plan::LossKind: connections, modules, feet.
   std::array<bool, plan::kLossKindCount> kinds = {true, true, true};
   /// Losses that are not judged after this time are undecided.

@@ -90,6 +90,7 @@ Cascade find_cascade(const Structure& structure, const CheckOptions& options,
   HOLDFAST_CHECK(spec.has_value());  // The structure's robot was made of it.
   plan::CascadeOptions how;
   how.equilibrium = equilibrium_options(options);
+  how.is_deformed = options.is_deformed_wanted;
   how.progress = progress;
   auto found = plan::find_cascade(spec.value(), how);
   HOLDFAST_CHECK(found.has_value());  // Connected parts that something supports are robots.

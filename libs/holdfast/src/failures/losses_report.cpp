@@ -31,6 +31,24 @@ std::string consequence(const LossAnswer& answer) {
   return text;
 }
 
+/// What follows a fatal loss, where that was sought.
+std::string aftermath(const LossAnswer& answer) {
+  if (!answer.after) {
+    return "";
+  }
+  const plan::Aftermath& after = *answer.after;
+  const std::string fall = after.fallen_count == 0
+                               ? "no module falls"
+                               : host::counted(after.fallen_count, "module") +
+                                     (after.fallen_count == 1 ? " falls" : " fall");
+  const std::string rounds = host::counted(after.round_count, "round");
+  return after.outcome == plan::CascadeOutcome::kUndecided
+             ? fmt::format("; then undecided after {}: {} by then", rounds, fall)
+             : fmt::format(
+                   "; then {} in {}{}", fall, rounds,
+                   after.outcome == plan::CascadeOutcome::kFalls ? ", nothing is left" : "");
+}
+
 void write_loss(io::JsonStream& json, const model::Robot& robot, const Loss& loss) {
   switch (loss.kind) {
     case LossKind::kConnection:
@@ -62,6 +80,15 @@ void write_answer(io::JsonStream& json, const model::Robot& robot, const LossAns
   json.member("verdict", verdict::name(answer.verdict));
   json.member("load_ratio_max", answer.load_ratio_max);
   json.member("fallen", answer.fallen_count);
+  if (answer.after) {
+    json.key("cascade");
+    json.begin_object();
+    json.member("outcome", plan::name(answer.after->outcome));
+    json.member("rounds", answer.after->round_count);
+    json.member("broken", answer.after->broken_count);
+    json.member("fallen", answer.after->fallen_count);
+    json.end_object();
+  }
   json.end_object();
 }
 
@@ -112,6 +139,8 @@ plan::LossOptions loss_options(const LoseOneOptions& options) {
   how.seconds_max = options.seconds_max;
   how.progress = options.progress;
   how.equilibrium = equilibrium_options(options.check);
+  how.is_deformed = options.check.is_deformed_wanted;
+  how.is_cascade_wanted = options.is_cascade_wanted;
   return how;
 }
 
@@ -128,8 +157,8 @@ std::string lose_one_text(const LossReport& report) {
   };
   add(headline(report));
   for (std::size_t i = 0; i < std::min(report.fatal.size(), kShownMax); ++i) {
-    add(fmt::format("without {}: {}", loss_words(report.fatal[i].loss),
-                    consequence(report.fatal[i])));
+    add(fmt::format("without {}: {}{}", loss_words(report.fatal[i].loss),
+                    consequence(report.fatal[i]), aftermath(report.fatal[i])));
   }
   if (report.fatal.size() > kShownMax) {
     add(fmt::format("(and {} more)", report.fatal.size() - kShownMax));

@@ -4,8 +4,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "factor_text.hpp"
 #include "holdfast/host/text.hpp"
+#include "holdfast/io/beside_one.hpp"
 
 namespace holdfast::io {
 namespace {
@@ -30,11 +33,42 @@ void write_event(JsonStream& json, const model::Robot& robot, const large::Event
   json.end_object();
 }
 
-void write_point(JsonStream& json, const large::PathPoint& point) {
-  json.begin_object();
+void write_point_members(JsonStream& json, const large::PathPoint& point) {
   json.member("factor", point.factor);
   json.member("load_ratio_max", point.load_ratio_max);
   json.member("displacement_max_mm", point.displacement_max_mm);
+}
+
+void write_branch(JsonStream& json, const model::Robot& robot, const large::Branch& branch) {
+  json.begin_object();
+  json.member("end", large::name(branch.end));
+  json.key("cells");
+  json.begin_array();
+  for (const std::size_t module : branch.modules) {
+    json.value(robot.modules()[module].cell);
+  }
+  json.end_array();
+  json.key("holds");
+  if (branch.rest) {
+    json.begin_object();
+    json.member("factor", branch.rest->factor);
+    json.member("load_ratio_max",
+                branch.rest->worst ? std::optional(branch.rest->load_ratio_max) : std::nullopt);
+    json.member("displacement_max_mm", branch.rest->displacement_max_mm);
+    json.member("rotation_max_rad", branch.rest->rotation_max_rad);
+    json.end_object();
+  } else {
+    json.value(nullptr);
+  }
+  json.key("path");
+  json.begin_array();
+  for (const large::PathPoint& point : branch.points) {
+    json.begin_object();
+    write_point_members(json, point);
+    json.member("stable", point.is_stable);
+    json.end_object();
+  }
+  json.end_array();
   json.end_object();
 }
 
@@ -55,6 +89,75 @@ std::string event_text(const model::Robot& robot, const large::Event& event) {
       break;
   }
   return fmt::format("the strain at an edge reaches {}", large::kStrainMax);
+}
+
+/// Where a branch that begins is followed to.
+std::string end_text(const model::Robot& robot, const large::Branch& branch) {
+  const double factor = branch.last.factor;
+  const auto event = [&](large::EventKind kind) {
+    return fmt::format("to where {} at {} times these loads",
+                       event_text(robot, {.kind = kind, .modules = branch.modules}),
+                       factor_text(factor));
+  };
+  switch (branch.end) {
+    case large::End::kFactorMax:
+      return fmt::format("up to {} times these loads", factor_text(factor));
+    case large::End::kUnloaded:
+      return "back to no loads";
+    case large::End::kTouchesFloor:
+      return event(large::EventKind::kTouchesFloor);
+    case large::End::kTouchesItself:
+      return event(large::EventKind::kTouchesItself);
+    case large::End::kTooSoft:
+      return event(large::EventKind::kTooSoft);
+    case large::End::kLetsGo:
+      return fmt::format("to where a facet opens and lets go sideways at {} times these loads",
+                         factor_text(factor));
+    case large::End::kNotFound:
+      return fmt::format("to {} times these loads, beyond which no equilibrium was found",
+                         factor_text(factor));
+    case large::End::kSteps:
+      break;
+  }
+  return fmt::format("for {} to {} times these loads", host::counted(branch.points.size(), "step"),
+                     factor_text(factor));
+}
+
+std::string branch_text(const model::Robot& robot, const large::Branch& branch) {
+  if (branch.points.empty()) {
+    return branch.end == large::End::kLetsGo
+               ? "not followed: a facet opens and lets go sideways, a jump"
+               : "not followed: no equilibrium was found beside it";
+  }
+  if (!branch.rest) {
+    double most = 0;
+    for (const large::PathPoint& point : branch.points) {
+      most = point.is_stable ? std::max(most, point.factor) : most;
+    }
+    return (most > 0 ? fmt::format("stable up to {} times these loads at most", factor_text(most))
+                     : std::string("nothing holds")) +
+           "; followed " + end_text(robot, branch);
+  }
+  const large::State& rest = *branch.rest;
+  return fmt::format("holds at {} times these loads, moved by {:.3g} mm, turned by {:.3g} rad{}",
+                     factor_text(rest.factor), rest.displacement_max_mm, rest.rotation_max_rad,
+                     rest.worst && rest.load_ratio_max >= 1
+                         ? fmt::format(", if no connection breaks: load ratio {}",
+                                       beside_one(rest.load_ratio_max, 4))
+                         : std::string());
+}
+
+/// What is behind the loss of stability, a line for each branch.
+std::string behind_text(const model::Robot& robot, const large::Path& path) {
+  std::string text;
+  for (std::size_t i = 0; i < path.behind.size(); ++i) {
+    text += fmt::format("              behind it{}: {}\n",
+                        path.behind.size() < 2 ? ""
+                        : i == 0               ? ", one way"
+                                               : ", the other way",
+                        branch_text(robot, path.behind[i]));
+  }
+  return text;
 }
 
 }  // namespace
@@ -99,9 +202,19 @@ void write_deformed(JsonStream& json, const ReportEntry& entry) {
   json.key("path");
   json.begin_array();
   for (const large::PathPoint& point : path.points) {
-    write_point(json, point);
+    json.begin_object();
+    write_point_members(json, point);
+    json.end_object();
   }
   json.end_array();
+  if (!path.behind.empty()) {
+    json.key("behind");
+    json.begin_array();
+    for (const large::Branch& branch : path.behind) {
+      write_branch(json, *entry.robot, branch);
+    }
+    json.end_array();
+  }
   json.member("steps", path.step_count);
   json.member("solves", path.solve_count);
   json.member("seconds", entry.deformed_seconds);
@@ -133,6 +246,7 @@ std::string deformed_text(const ReportEntry& entry) {
     text += fmt::format("              at {} times these loads it {}\n",
                         factor_text(path.critical->factor),
                         path.critical->loss == large::Loss::kBifurcation ? "buckles" : "collapses");
+    text += behind_text(*entry.robot, path);
   } else if (path.outcome == large::Outcome::kNotFound) {
     text += fmt::format("              beyond {} times these loads no equilibrium was found\n",
                         factor_text(path.last.factor));

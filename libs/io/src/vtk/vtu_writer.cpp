@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <sstream>
 #include <type_traits>
@@ -101,6 +102,17 @@ Triple first_half(const base::Vec6<double>& vector) { return {vector[0], vector[
 
 Triple second_half(const base::Vec6<double>& vector) { return {vector[3], vector[4], vector[5]}; }
 
+/// (exp(theta) - 1) r, by Rodrigues' formula.
+Triple turned(const Triple& theta, const Triple& r) {
+  const double angle = std::sqrt(theta[0] * theta[0] + theta[1] * theta[1] + theta[2] * theta[2]);
+  const Triple once = cross(theta, r);
+  if (angle == 0) {
+    return once;
+  }
+  const double half = std::sin(angle / 2) / (angle / 2);
+  return sum(scaled(std::sin(angle) / angle, once), scaled(half * half / 2, cross(theta, once)));
+}
+
 /// The number of pressing corners of a facet: 0 (open), 1, 2 (an edge) or 4 (closed).
 std::int8_t pressing_corners(const mechanics::ContactState& state) {
   if (!state.pressed) {
@@ -117,7 +129,7 @@ class Writer {
   /// The modules from `shown_count` on are not shown, but for their connections to those before.
   Writer(std::ostream& out, const model::Robot& robot, std::size_t shown_count,
          const verdict::Assessment& assessment, const WriteOptions& options,
-         std::span<const model::Obstacle> obstacles)
+         std::span<const model::Obstacle> obstacles, std::optional<double> factor = {})
       : out_(out),
         robot_(robot),
         assessment_(assessment),
@@ -131,6 +143,7 @@ class Writer {
         paints_(paint_modules(robot, assessment)),
         is_broken_(connection_count_, false),
         has_loads_(has_loads(robot, assessment)),
+        factor_(factor),
         arrays_(out, options) {
     for (const std::size_t connection : assessment.broken) {
       is_broken_[connection] = true;
@@ -289,9 +302,16 @@ class Writer {
         "format=\"ascii\">\n{:.9g}\n</DataArray>\n<DataArray type=\"UInt8\" Name=\"has_loads\" "
         "NumberOfTuples=\"1\" format=\"ascii\">\n{}\n</DataArray>\n<DataArray type=\"Float64\" "
         "Name=\"gravity_m_s2\" NumberOfComponents=\"3\" NumberOfTuples=\"1\" "
-        "format=\"ascii\">\n{:.9g} {:.9g} {:.9g}\n</DataArray>\n</FieldData>\n",
+        "format=\"ascii\">\n{:.9g} {:.9g} {:.9g}\n</DataArray>\n",
         std::isfinite(largest) ? largest + 0.0 : 0.0, flag(has_loads_), robot_.gravity()[0] + 0.0,
         robot_.gravity()[1] + 0.0, robot_.gravity()[2] + 0.0);
+    if (factor_) {
+      out_ << fmt::format(
+          "<DataArray type=\"Float64\" Name=\"load_factor\" NumberOfTuples=\"1\" "
+          "format=\"ascii\">\n{:.9g}\n</DataArray>\n",
+          *factor_);
+    }
+    out_ << "</FieldData>\n";
   }
 
   Triple centre(const base::Cell& cell) const {
@@ -349,13 +369,15 @@ class Writer {
     return has_loads_ && all.size() == module_count_ ? all[module] : base::Vec6<double>{};
   }
 
-  /// Modules move as rigid bodies, their facets with them: u + theta x r.
+  /// Modules move as rigid bodies, their facets with them: u + theta x r, or at large rotations
+  /// u + (exp(theta) - 1) r.
   void announce_displacement() {
     announce_point_array(
         "displacement_mm",
         [this](std::size_t module, const Triple& point) {
           const base::Vec6<double> u = displacement(module);
-          return sum(first_half(u), cross(second_half(u), point));
+          return sum(first_half(u),
+                     factor_ ? turned(second_half(u), point) : cross(second_half(u), point));
         },
         [](const base::Cell&, const Triple&) { return Triple{}; });
   }
@@ -528,16 +550,20 @@ class Writer {
   std::vector<ModulePaint> paints_;
   std::vector<bool> is_broken_;  ///< By connection.
   bool has_loads_ = false;
+  std::optional<double> factor_;                   ///< Of the loads, in the deformed shape.
   std::vector<base::Vec6<double>> ground_forces_;  ///< By module.
   VtuArrays arrays_;
 };
 
 }  // namespace
 
-void write_vtu(std::ostream& out, const model::Robot& robot, const verdict::Assessment& assessment,
-               const WriteOptions& options, std::span<const model::Obstacle> obstacles) {
+namespace {
+
+void write_whole_vtu(std::ostream& out, const model::Robot& robot,
+                     const verdict::Assessment& assessment, const WriteOptions& options,
+                     std::span<const model::Obstacle> obstacles, std::optional<double> factor) {
   const auto write = [&](std::ostream& into) {
-    Writer(into, robot, robot.modules().size(), assessment, options, obstacles).write();
+    Writer(into, robot, robot.modules().size(), assessment, options, obstacles, factor).write();
   };
   if (out.tellp() >= 0) {
     write(out);
@@ -546,6 +572,19 @@ void write_vtu(std::ostream& out, const model::Robot& robot, const verdict::Asse
   std::ostringstream whole;
   write(whole);
   out << whole.str();
+}
+
+}  // namespace
+
+void write_vtu(std::ostream& out, const model::Robot& robot, const verdict::Assessment& assessment,
+               const WriteOptions& options, std::span<const model::Obstacle> obstacles) {
+  write_whole_vtu(out, robot, assessment, options, obstacles, std::nullopt);
+}
+
+void write_deformed_vtu(std::ostream& out, const model::Robot& robot,
+                        const verdict::Assessment& assessment, double factor,
+                        const WriteOptions& options, std::span<const model::Obstacle> obstacles) {
+  write_whole_vtu(out, robot, assessment, options, obstacles, factor);
 }
 
 void write_vtu_piece(std::ostream& out, const model::Robot& part, std::size_t own_count,

@@ -30,6 +30,23 @@ bool has_doubtful_connection(const verdict::Assessment& assessment) {
   });
 }
 
+/// The connections that break in an overloaded robot. One that bends may carry less under all of
+/// its loads than on the way: then it is the one that breaks there.
+std::vector<std::size_t> breaking(const verdict::Assessment& assessment) {
+  return assessment.broken.empty()
+             ? std::vector{static_cast<std::size_t>(assessment.reasons.front().numbers[2])}
+             : assessment.broken;
+}
+
+/// Whether an unstable robot falls: it topples, bent or not. One that buckles or collapses else may
+/// come to rest again.
+bool is_fall(const verdict::Assessment& assessment) {
+  const verdict::Reason& reason = assessment.reasons.front();
+  const bool bends_away = reason.code == verdict::ReasonCode::kBuckles ||
+                          reason.code == verdict::ReasonCode::kCollapses;
+  return !bends_away || reason.numbers[5] > 0;
+}
+
 /// A robot that breaks, piece by piece.
 class Breaking {
  public:
@@ -37,12 +54,17 @@ class Breaking {
   Breaking(model::RobotSpec spec, const model::Robot& whole, const CascadeOptions& options)
       : spec_(std::move(spec)), whole_(whole), options_(options) {}
 
-  base::Result<Cascade> run() {
+  /// Follows it, without the connection or module that is lost, if one is.
+  base::Result<Cascade> run(const Loss* loss = nullptr) {
     Piece all(whole_.modules().size());
     for (std::size_t i = 0; i < all.size(); ++i) {
       all[i] = static_cast<std::int32_t>(i);
     }
+    if (loss != nullptr) {
+      lose(*loss, all);
+    }
     std::vector<Piece> pieces = held_parts_of(all);
+    take_round();  // Of what falls at once.
     while (!pieces.empty() && cascade_.reasons.empty()) {
       tell(pieces);
       std::vector<Piece> next;
@@ -69,6 +91,19 @@ class Breaking {
     }
   }
 
+  void lose(const Loss& loss, Piece& all) {
+    const auto index = [&](const base::Cell& cell) {
+      const auto found = std::ranges::find(whole_.modules(), cell, &model::Module::cell);
+      return static_cast<std::int32_t>(found - whole_.modules().begin());
+    };
+    if (loss.kind == LossKind::kModule) {
+      std::erase(all, index(loss.cells[0]));
+      return;
+    }
+    spec_.released.push_back({loss.cells[0], loss.cells[1]});
+    broken_.insert(std::minmax(index(loss.cells[0]), index(loss.cells[1])));
+  }
+
   /// The robot of a piece, its modules in the piece's order.
   base::Result<model::Robot> robot_of(const Piece& piece) const {
     model::RobotSpec spec = spec_;
@@ -88,11 +123,13 @@ class Breaking {
     }
     solver::EquilibriumOptions options = as_checked(robot.value(), options_.equilibrium);
     options.has_rigid_figures = false;
-    const verdict::Assessment assessment = assess(robot.value(), options);
+    const verdict::Assessment assessment =
+        options_.is_deformed ? assess_bent(robot.value(), options, spec_.obstacles)
+                             : assess(robot.value(), options);
     ++cascade_.check_count;
     if (assessment.verdict == Verdict::kOverload && !has_doubtful_connection(assessment)) {
       break_apart(piece, robot.value(), assessment, next);
-    } else if (assessment.verdict == Verdict::kUnstable) {
+    } else if (assessment.verdict == Verdict::kUnstable && is_fall(assessment)) {
       fall(piece);
     } else {
       standing_.insert(standing_.end(), piece.begin(), piece.end());
@@ -114,7 +151,7 @@ class Breaking {
 
   void break_apart(const Piece& piece, const model::Robot& robot,
                    const verdict::Assessment& assessment, std::vector<Piece>& next) {
-    for (const std::size_t index : assessment.broken) {
+    for (const std::size_t index : breaking(assessment)) {
       const auto [a, b] = model::ends(robot, index);
       round_.broken.push_back(
           {.between = {a, b}, .load_ratio = assessment.connections[index].load_ratio});
@@ -199,6 +236,22 @@ class Breaking {
   Cascade cascade_;
 };
 
+/// Whether a facet is all that holds a robot.
+bool is_last_foot(const model::Robot& robot, const Loss& loss) {
+  const auto held = std::ranges::count_if(robot.modules(), [](const model::Module& module) {
+    return module.support != model::Support::kNone;
+  });
+  return loss.direction && held == 1 && robot.facets().size() == 1;
+}
+
+/// The spec with its planned modules among those that exist.
+model::RobotSpec all_existing(const model::RobotSpec& spec) {
+  model::RobotSpec whole = spec;
+  whole.existing.insert(whole.existing.end(), spec.planned.begin(), spec.planned.end());
+  whole.planned.clear();
+  return whole;
+}
+
 }  // namespace
 
 std::size_t Cascade::broken_count() const {
@@ -218,14 +271,34 @@ std::size_t Cascade::fallen_count() const {
 }
 
 base::Result<Cascade> find_cascade(const model::RobotSpec& spec, const CascadeOptions& options) {
-  model::RobotSpec whole = spec;
-  whole.existing.insert(whole.existing.end(), spec.planned.begin(), spec.planned.end());
-  whole.planned.clear();
+  model::RobotSpec whole = all_existing(spec);
   const auto robot = model::Robot::create(whole, options.equilibrium.thread_count);
   if (!robot) {
     return robot.error();
   }
   return Breaking(std::move(whole), robot.value(), options).run();
+}
+
+base::Result<Cascade> find_cascade_after(const model::RobotSpec& spec, const Loss& loss,
+                                         const CascadeOptions& options) {
+  model::RobotSpec whole = all_existing(spec);
+  if (loss.kind == LossKind::kFoot) {
+    const auto robot = model::Robot::create(whole, options.equilibrium.thread_count);
+    if (robot && is_last_foot(robot.value(), loss)) {
+      return Cascade{.outcome = CascadeOutcome::kFalls, .rounds = {{.fallen = whole.existing}}};
+    }
+    if (loss.direction) {
+      whole.lost_facets.push_back({.cell = loss.cells[0], .direction = *loss.direction});
+    } else {
+      std::erase(whole.fixed, loss.cells[0]);
+    }
+    return find_cascade(whole, options);
+  }
+  const auto robot = model::Robot::create(whole, options.equilibrium.thread_count);
+  if (!robot) {
+    return robot.error();
+  }
+  return Breaking(std::move(whole), robot.value(), options).run(&loss);
 }
 
 const char* name(CascadeOutcome outcome) {

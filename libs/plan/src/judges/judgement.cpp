@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "holdfast/verdict/deformed.hpp"
+
 namespace holdfast::plan {
 
 using verdict::ReasonCode;
@@ -31,6 +33,19 @@ verdict::Assessment assess(const model::Robot& robot, const solver::EquilibriumO
   solver::Equilibrium none;
   none.outcome = solver::Outcome::kNotSought;
   return verdict::assess_equilibrium(robot, std::move(none), options.thread_count);
+}
+
+verdict::Assessment assess_bent(const model::Robot& robot,
+                                const solver::EquilibriumOptions& options,
+                                std::span<const model::Obstacle> obstacles) {
+  // As far beyond the loads as what happens there would leave the verdict open.
+  return verdict::assess_deformed(robot, assess(robot, options),
+                                  {.factor_max = 1 + 2 * verdict::kFactorTie,
+                                   .obstacles = obstacles,
+                                   .is_bonded = options.is_bonded,
+                                   .memory_bytes_max = options.memory_bytes_max,
+                                   .thread_count = options.thread_count})
+      .assessment;
 }
 
 std::string verdict_text(const Judgement& judgement) {

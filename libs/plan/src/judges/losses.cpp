@@ -127,11 +127,14 @@ class LossSearch {
     options_.equilibrium = as_checked(robot, options_.equilibrium);
     options_.equilibrium.has_rigid_figures = false;
     // What bending does takes a solution of each robot by itself.
-    options_.is_by_checks = options_.is_by_checks || robot.is_modulus_stated();
+    options_.is_by_checks =
+        options_.is_by_checks || options_.is_deformed || robot.is_modulus_stated();
   }
 
   LossReport find() {
-    const verdict::Assessment solved = assess(robot_, options_.equilibrium);
+    const verdict::Assessment solved =
+        options_.is_deformed ? assess_bent(robot_, options_.equilibrium, spec_.obstacles)
+                             : assess(robot_, options_.equilibrium);
     LossReport report{.whole = judgement_of(solved)};
     parts_ = PartFinder(robot_).find(options_.kinds);
     report.loss_count = parts_.size();
@@ -158,6 +161,9 @@ class LossSearch {
     check_rest(report);
     refine();
     conclude(report);
+    if (options_.is_cascade_wanted) {
+      find_aftermaths(report.fatal);
+    }
     return report;
   }
 
@@ -293,6 +299,10 @@ class LossSearch {
         }
       }
     }
+    if (options_.is_deformed) {
+      solver::EquilibriumOptions mine = as_checked(robot, options_.equilibrium);
+      return judgement_of(assess_bent(robot, mine, spec_.obstacles));
+    }
     return plan::judge(robot, options_.equilibrium);
   }
 
@@ -358,6 +368,25 @@ class LossSearch {
                           (has_ratio(answer, true) && *answer->load_ratio_max > largest);
       if (counts && (!report.worst || *answer->load_ratio_max > *report.worst->load_ratio_max)) {
         report.worst = *answer;
+      }
+    }
+  }
+
+  /// What follows each fatal loss, as long as there is time.
+  void find_aftermaths(std::vector<LossAnswer>& fatal) {
+    const CascadeOptions how{.equilibrium = options_.equilibrium,
+                             .is_deformed = options_.is_deformed};
+    for (LossAnswer& answer : fatal) {
+      if (patience_.is_over()) {
+        return;
+      }
+      const auto cascade = find_cascade_after(spec_, answer.loss, how);
+      if (cascade) {
+        const Cascade& found = cascade.value();
+        answer.after = Aftermath{.outcome = found.outcome,
+                                 .round_count = found.rounds.size(),
+                                 .broken_count = found.broken_count(),
+                                 .fallen_count = found.fallen_count()};
       }
     }
   }

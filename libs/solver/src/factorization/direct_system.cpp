@@ -73,9 +73,10 @@ bool is_refined(const Solution& solution) { return change_share(solution) <= kRe
 }  // namespace
 
 std::unique_ptr<DirectSystem> DirectSystem::make(const model::Robot& robot,
-                                                 const EquilibriumOptions& options) {
+                                                 const EquilibriumOptions& options,
+                                                 std::size_t product_count_max) {
   std::unique_ptr<DirectSystem> system(new DirectSystem(robot, options));
-  if (system->lu_->is_too_large()) {
+  if (system->lu_->is_too_large() || system->lu_->factor_product_count() > product_count_max) {
     return nullptr;
   }
   system->assemble();

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -17,10 +19,12 @@ namespace holdfast::solver {
 /// facet touches is factorized again.
 class DirectSystem final : public LinearSystem {
  public:
-  /// Makes the system; none if it needs more memory, or fills in more, than the options allow. The
-  /// factors are symmetric until a facet tilts under the regularised law.
-  static std::unique_ptr<DirectSystem> make(const model::Robot& robot,
-                                            const EquilibriumOptions& options);
+  /// Makes the system; none if it needs more memory, or fills in more, than the options allow, or
+  /// would take more products of two blocks to be factorized, known before anything is laid out.
+  /// The factors are symmetric until a facet tilts under the regularised law.
+  static std::unique_ptr<DirectSystem> make(
+      const model::Robot& robot, const EquilibriumOptions& options,
+      std::size_t product_count_max = std::numeric_limits<std::size_t>::max());
 
   [[nodiscard]] LinearOutcome solve(double tolerance) override;
 

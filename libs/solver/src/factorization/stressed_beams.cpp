@@ -130,43 +130,20 @@ StressedBeams::Vecs StressedBeams::sum_over_neighbours(const OnPair& on_pair) {
   return sums;
 }
 
-StressedBeams::Vecs StressedBeams::softening(const Vecs& x) {
-  for (const base::Direction direction : base::directions(robot().lattice())) {
-    bases(direction);
-  }
-  Vecs sums = sum_over_neighbours([&](std::size_t p, base::Direction direction, std::size_t q) {
-    const Vec s = system_.beam().middle_force(direction, displacement_[p], displacement_[q]);
-    const Bases& bases = this->bases(direction);
-    Mat6<double> pp;
-    Mat6<double> pq;
-    for (std::size_t k = 0; k < 6; ++k) {
-      add_times(pp, -s[k], bases[k].pp);
-      add_times(pq, -s[k], bases[k].pq);
-    }
-    Vec force = base::multiply(pp, x[p]);
-    base::add_to(force, base::multiply(pq, x[q]));
-    return force;
-  });
-  for (std::size_t i = 0; i < system_.facets().size(); ++i) {
-    const std::size_t module = system_.facets()[i].module;
-    base::add_times(sums[module], -1, base::multiply(block(i), x[module]));
-  }
-  return sums;
-}
-
-/// Robots that no threads share have each connection looked at once.
-StressedBeams::Vecs StressedBeams::second_order_forces_of_beams() {
+/// The sum of on_pair(direction, module, neighbour), the forces of a beam on its two ends. Robots
+/// that no threads share have each connection looked at once.
+template <class OnPair>
+StressedBeams::Vecs StressedBeams::sum_over_beams(const OnPair& on_pair) {
   if (displacement_.size() >= host::Team::kSharedItemMin) {
     return sum_over_neighbours([&](std::size_t p, base::Direction direction, std::size_t q) {
-      return beams_[direction].second_order_forces(displacement_[p], displacement_[q]).p;
+      return on_pair(direction, p, q).p;
     });
   }
   Vecs sums(displacement_.size(), Vec{});
   for (const model::Connection connection : robot().connections()) {
     const std::size_t p = base::at(connection.a);
     const std::size_t q = base::at(connection.b);
-    const mechanics::EndForces forces =
-        beams_[connection.direction].second_order_forces(displacement_[p], displacement_[q]);
+    const mechanics::EndForces forces = on_pair(connection.direction, p, q);
     base::add_to(sums[p], forces.p);
     base::add_to(sums[q], forces.q);
   }
@@ -178,8 +155,27 @@ StressedBeams::Vecs StressedBeams::second_order_forces_of_beams() {
   return sums;
 }
 
+StressedBeams::Vecs StressedBeams::softening(const Vecs& x) {
+  Vecs sums = sum_over_beams([&](base::Direction direction, std::size_t p, std::size_t q) {
+    Vec s = system_.beam().middle_force(direction, displacement_[p], displacement_[q]);
+    for (double& part : s) {
+      part = -part;
+    }
+    return beams_[direction].geometric_forces(s, x[p], x[q]);
+  });
+  for (std::size_t i = 0; i < system_.facets().size(); ++i) {
+    const FacetState& facet = system_.facets()[i];
+    base::add_times(
+        sums[facet.module], -1,
+        beams_[facet.direction].geometric_forces(facet_stress(i), x[facet.module], Vec{}).p);
+  }
+  return sums;
+}
+
 StressedBeams::Vecs StressedBeams::second_order_forces() {
-  Vecs sums = second_order_forces_of_beams();
+  Vecs sums = sum_over_beams([&](base::Direction direction, std::size_t p, std::size_t q) {
+    return beams_[direction].second_order_forces(displacement_[p], displacement_[q]);
+  });
   for (const FacetState& facet : system_.facets()) {
     const Vec& u = displacement_[facet.module];
     const bool is_stuck = facet.state == mechanics::kStuck && facet.is_held;

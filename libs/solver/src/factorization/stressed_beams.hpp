@@ -57,10 +57,11 @@ class StressedBeams {
   /// The blocks of a direction, made when they are first asked for, which no two threads may do.
   const Bases& bases(base::Direction direction);
 
-  Vecs second_order_forces_of_beams();
-
   template <class OnPair>
   Vecs sum_over_neighbours(const OnPair& on_pair);
+
+  template <class OnPair>
+  Vecs sum_over_beams(const OnPair& on_pair);
 
   const LinearSystem& system_;
   const Vecs& displacement_;

@@ -69,6 +69,13 @@ std::string write_svg_with_fallen(const model::Robot& robot, std::span<const bas
 void write_vtu(std::ostream& out, const model::Robot& robot, const verdict::Assessment& assessment,
                const WriteOptions& options = {}, std::span<const model::Obstacle> obstacles = {});
 
+/// Writes a robot in its deformed shape under `factor` times its loads as write_vtu() does. Modules
+/// are turned by their rotation vectors, however large; the factor is `load_factor` of the file.
+void write_deformed_vtu(std::ostream& out, const model::Robot& robot,
+                        const verdict::Assessment& assessment, double factor,
+                        const WriteOptions& options = {},
+                        std::span<const model::Obstacle> obstacles = {});
+
 /// Writes a part of a robot (model/robot_part.hpp) as write_vtu() does: its first `own_count`
 /// modules, and the connections and facets that begin at them, without obstacles. The stream must
 /// be seekable.

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -53,6 +54,22 @@ inline constexpr int kEventKindCount = 4;
 /// The strain at the edge of a facet beyond which a linear law says nothing.
 inline constexpr double kStrainMax = 0.5;
 
+/// Why a branch behind the loss of stability ends.
+enum class End : std::uint8_t {
+  kFactorMax,      ///< The loads have grown to Options::factor_max.
+  kUnloaded,       ///< They have gone back to none.
+  kTouchesFloor,   ///< As the event of this name: this model makes no contacts,
+  kTouchesItself,  ///< nor these,
+  kTooSoft,        ///< and knows linear laws only.
+  kLetsGo,         ///< A facet opens and lets go sideways, and no stable equilibrium is near.
+  kNotFound,       ///< No further equilibrium is found.
+  kSteps,          ///< It has not ended after as many steps as are made.
+};
+
+/// Returns "up_to", "unloaded", "touches_floor", "touches_itself", "too_soft", "lets_go",
+/// "not_found" or "steps".
+const char* name(End end);
+
 /// Returns "breaks", "touches_floor", "touches_itself" or "too_soft".
 const char* name(EventKind kind);
 
@@ -80,6 +97,7 @@ struct PathPoint {
   double factor = 0;
   double load_ratio_max = 0;
   double displacement_max_mm = 0;
+  bool is_stable = true;  ///< All are but those behind a loss of stability.
 };
 
 /// An equilibrium under lambda times the loads.
@@ -99,6 +117,17 @@ struct State {
   double edge_strain_max = 0;
 };
 
+/// Equilibria behind the loss of stability, stable or not, in their order along the branch.
+struct Branch {
+  End end = End::kNotFound;
+  std::vector<std::size_t> modules = {};  ///< Of the event that ends it.
+  std::vector<PathPoint> points = {};
+  /// The first stable equilibrium under the loads as they are; under those of a limit point where
+  /// that is beyond them, under Options::factor_max where a bifurcation is.
+  std::optional<State> rest = {};
+  State last = {};  ///< Without poses if there are no points.
+};
+
 /// What is wanted of a path.
 struct Options {
   double factor_max = 2;  ///< Where the path ends; more than 0.
@@ -106,6 +135,12 @@ struct Options {
   /// rest.
   std::span<const model::Obstacle> obstacles = {};
   bool is_bonded = false;  ///< Facets hold like a module below would.
+  /// Goes on behind the first loss of stability: by arc length, or from a bifurcation along the
+  /// mode to both sides.
+  bool is_followed_behind = false;
+  /// A function that is called with each equilibrium, whether it is stable, and the number of its
+  /// branch: 0 before the loss.
+  std::function<void(const State& state, bool is_stable, int branch)> on_state = {};
   std::size_t memory_bytes_max = solver::EquilibriumOptions{}.memory_bytes_max;
   int thread_count = 0;  ///< 0: as many as the machine has cores.
 };
@@ -118,8 +153,10 @@ struct Path {
   std::vector<PathPoint> points = {};
   State last = {};                   ///< At lambda = 1, or the last one where that is not reached.
   std::optional<State> loaded = {};  ///< At lambda = 1.
-  int step_count = 0;                ///< Equilibria that were found.
-  int solve_count = 0;               ///< Factorizations.
+  /// Behind the loss of stability, if that is wanted: two of a bifurcation, else one.
+  std::vector<Branch> behind = {};
+  int step_count = 0;   ///< Equilibria that were found.
+  int solve_count = 0;  ///< Factorizations.
 };
 
 /// Follows a robot's stable equilibria.

@@ -124,6 +124,11 @@ class LargeBeam {
   /// middle, Eq. (16), local frame.
   EndTangent geometric_stiffness(const base::Vec6<double>& stress) const;
 
+  /// geometric_stiffness(stress) times a motion, its rotation vectors in the last three numbers:
+  /// the same without making the matrices, in a tenth of the time.
+  EndForces geometric_forces(const base::Vec6<double>& stress, const base::Vec6<double>& u_p,
+                             const base::Vec6<double>& u_q) const;
+
   /// The terms of second order of the forces at u_p, u_q, rotation vectors in their last three:
   /// end_forces() at h u is h K u + h^2 second_order_forces(u) + O(h^3).
   EndForces second_order_forces(const base::Vec6<double>& u_p, const base::Vec6<double>& u_q) const;

@@ -7,6 +7,7 @@
 
 #include "holdfast/base/result.hpp"
 #include "holdfast/model/robot.hpp"
+#include "holdfast/plan/loss.hpp"
 #include "holdfast/plan/sequence.hpp"
 #include "holdfast/solver/options.hpp"
 
@@ -53,6 +54,9 @@ struct Cascade {
 
 struct CascadeOptions {
   solver::EquilibriumOptions equilibrium = {};
+  /// Judges each piece by its equilibrium in the deformed shape. A piece that buckles or collapses,
+  /// but for tipping over its feet, makes the cascade undecided: it may lean and hold.
+  bool is_deformed = false;
   /// Called before each round with how many modules still stand, and how many there are.
   std::function<void(std::size_t standing, std::size_t count)> progress = {};
 };
@@ -61,6 +65,11 @@ struct CascadeOptions {
 /// it would. Errors: those of model::Robot::create().
 base::Result<Cascade> find_cascade(const model::RobotSpec& spec,
                                    const CascadeOptions& options = {});
+
+/// Follows what breaks once a part is lost. Modules that nothing holds then fall in the first
+/// round; what is lost is not among those that fall.
+base::Result<Cascade> find_cascade_after(const model::RobotSpec& spec, const Loss& loss,
+                                         const CascadeOptions& options = {});
 
 /// Returns "holds", "stands", "falls" or "undecided".
 const char* name(CascadeOutcome outcome);

@@ -4,8 +4,10 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 
+#include "holdfast/model/environment.hpp"
 #include "holdfast/model/robot.hpp"
 #include "holdfast/solver/options.hpp"
 #include "holdfast/verdict/assessment.hpp"
@@ -49,6 +51,11 @@ verdict::Assessment first_look(const model::Robot& robot);
 /// by the options.
 verdict::Assessment assess(const model::Robot& robot,
                            const solver::EquilibriumOptions& options = {});
+
+/// assess(), and then by its equilibrium in the deformed shape, in which it may meet the obstacles.
+verdict::Assessment assess_bent(const model::Robot& robot,
+                                const solver::EquilibriumOptions& options,
+                                std::span<const model::Obstacle> obstacles);
 
 /// What a planner asks of it.
 Judgement judgement_of(const verdict::Assessment& assessment);

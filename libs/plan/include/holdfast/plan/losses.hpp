@@ -4,41 +4,26 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <limits>
 #include <optional>
-#include <string_view>
 #include <vector>
 
-#include "holdfast/base/cell.hpp"
-#include "holdfast/base/lattice.hpp"
 #include "holdfast/model/robot.hpp"
+#include "holdfast/plan/cascade.hpp"
 #include "holdfast/plan/judgement.hpp"
+#include "holdfast/plan/loss.hpp"
 #include "holdfast/solver/options.hpp"
 
 /// Does a robot hold whatever single part of it is lost: a connection, a module, a foot?
 namespace holdfast::plan {
 
-enum class LossKind : std::uint8_t {
-  kConnection,  ///< Two modules touch without being connected.
-  kModule,      ///< A module is not there, nor what it carries.
-  kFoot,        ///< A facet does not touch the environment, or a module is no longer fixed.
-};
-
-inline constexpr std::size_t kLossKindCount = 3;
-
-/// "connection", "module", "foot".
-std::string_view name(LossKind kind);
-
-/// One part that is lost.
-struct Loss {
-  LossKind kind = LossKind::kConnection;
-  std::array<base::Cell, 2> cells = {};  ///< Of a connection; else the first is the module's.
-  /// The direction of a foot from the module; none if that was fixed.
-  std::optional<base::Direction> direction = {};
-
-  friend bool operator==(const Loss&, const Loss&) = default;
+/// The end of the cascade that a loss sets off, in numbers.
+struct Aftermath {
+  CascadeOutcome outcome = CascadeOutcome::kUndecided;
+  std::size_t round_count = 0;  ///< Falling at once is the first.
+  std::size_t broken_count = 0;
+  std::size_t fallen_count = 0;
 };
 
 /// What follows from a loss: brittle, at once, and with nothing else lost before. Parts that the
@@ -52,6 +37,9 @@ struct LossAnswer {
   bool is_bound = false;         ///< That is no less than the largest load ratio.
   std::size_t fallen_count = 0;  ///< Modules that nothing holds any more.
 
+  /// What follows, if that is wanted, it is fatal, and there was time.
+  std::optional<Aftermath> after = {};
+
   bool is_fatal() const {
     return verdict == verdict::Verdict::kOverload || verdict == verdict::Verdict::kUnstable;
   }
@@ -64,6 +52,9 @@ struct LossOptions {
   double seconds_max = std::numeric_limits<double>::infinity();
   /// Robots of so many modules are first looked at by bounds that need no factorization.
   std::size_t loop_count_min = 3000;
+  /// Judges by equilibria in the deformed shape, each loss by a check.
+  bool is_deformed = false;
+  bool is_cascade_wanted = false;  ///< Finds what follows each fatal loss.
   bool is_by_checks = false;  ///< Judges every loss by a check of what is left: to compare with.
   /// Called now and then with how many losses are judged, of how many.
   std::function<void(std::size_t done, std::size_t count)> progress = {};

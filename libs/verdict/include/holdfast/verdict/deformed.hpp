@@ -28,4 +28,9 @@ struct Deformed {
 Deformed assess_deformed(const model::Robot& robot, Assessment linear,
                          const large::Options& options = {});
 
+/// What one equilibrium on a path says, for pictures: connections, displacements, and whether it is
+/// stable and anything breaks there. Whether it is reached it does not know.
+Assessment assess_state(const model::Robot& robot, const large::State& state, bool is_stable,
+                        bool is_bonded);
+
 }  // namespace holdfast::verdict
