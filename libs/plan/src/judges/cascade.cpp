@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "holdfast/model/connected_parts.hpp"
 #include "holdfast/plan/judgement.hpp"
 
 namespace holdfast::plan {
@@ -42,7 +43,7 @@ class Breaking {
     for (std::size_t i = 0; i < all.size(); ++i) {
       all[i] = static_cast<std::int32_t>(i);
     }
-    std::vector<Piece> pieces = held_parts_of(all);
+    std::vector<Piece> pieces = held_parts_of(all, whole_, {});
     while (!pieces.empty() && cascade_.reasons.empty()) {
       tell(pieces);
       std::vector<Piece> next;
@@ -119,20 +120,25 @@ class Breaking {
       round_.broken.push_back(
           {.between = {a, b}, .load_ratio = assessment.connections[index].load_ratio});
       spec_.released.push_back({a, b});
-      const model::Connection pair = robot.connections()[index];
-      broken_.insert(std::minmax(piece[at(pair.a)], piece[at(pair.b)]));
     }
-    for (Piece& part : held_parts_of(piece)) {
+    for (Piece& part : held_parts_of(piece, robot, assessment.broken)) {
       next.push_back(std::move(part));
     }
   }
 
-  /// The connected parts of a piece that something supports; the others fall.
-  std::vector<Piece> held_parts_of(const Piece& piece) {
+  /// The connected parts of a piece, whose robot is given, without what is broken of it; those
+  /// that nothing supports fall.
+  std::vector<Piece> held_parts_of(const Piece& piece, const model::Robot& robot,
+                                   const std::vector<std::size_t>& broken) {
+    const std::set<std::size_t> gone(broken.begin(), broken.end());
+    model::ConnectedParts parts = model::connected_parts(
+        robot.connections(), piece.size(),
+        [&](std::size_t index, const model::Connection&) { return !gone.contains(index); });
     std::vector<Piece> held;
-    std::set<std::int32_t> left(piece.begin(), piece.end());
-    while (!left.empty()) {
-      Piece part = part_from(*left.begin(), left);
+    for (Piece& part : parts.lists()) {
+      for (std::int32_t& module : part) {
+        module = piece[at(module)];
+      }
       const bool is_held = std::ranges::any_of(part, [&](std::int32_t module) {
         return whole_.modules()[at(module)].support != model::Support::kNone;
       });
@@ -143,22 +149,6 @@ class Breaking {
       }
     }
     return held;
-  }
-
-  /// The modules that are connected to one of those that are left, which it takes out of these.
-  Piece part_from(std::int32_t first, std::set<std::int32_t>& left) const {
-    Piece part = {first};
-    left.erase(first);
-    for (std::size_t i = 0; i < part.size(); ++i) {
-      const std::int32_t from = part[i];
-      for (const std::int32_t to : whole_.connected()[at(from)]) {
-        if (to >= 0 && !broken_.contains(std::minmax(from, to)) && left.erase(to) > 0) {
-          part.push_back(to);
-        }
-      }
-    }
-    std::ranges::sort(part);
-    return part;
   }
 
   std::vector<base::Cell> cells_of(std::vector<std::int32_t> modules) const {
@@ -192,7 +182,6 @@ class Breaking {
   model::RobotSpec spec_;  ///< With what has broken released.
   const model::Robot& whole_;
   const CascadeOptions& options_;
-  std::set<std::pair<std::int32_t, std::int32_t>> broken_;
   std::vector<std::int32_t> standing_;  ///< Modules of pieces that hold, or of which it is unknown.
   std::vector<std::int32_t> fallen_;    ///< In this round.
   CascadeRound round_;
