@@ -75,6 +75,13 @@ _holdfast() {
         --support-z) : ;;
         --pitch) : ;;
         --safety-factor|--margin) : ;;
+        --scatter) : ;;
+        --scatter-common) : ;;
+        --scatter-mass) : ;;
+        --scatter-law) words="lognormal normal weibull" ;;
+        --probability) : ;;
+        --lose) : ;;
+        --lose-seconds) : ;;
         --json) files=1 ;;
         --svg) files=1 ;;
         --size) : ;;
@@ -84,7 +91,7 @@ _holdfast() {
         --seconds) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --json --svg --size --title --grey --view --no-legend --limit --exact --seconds -q --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --json --svg --size --title --grey --view --no-legend --limit --exact --seconds -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     order)

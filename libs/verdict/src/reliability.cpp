@@ -37,21 +37,28 @@ constexpr double kShareMin = 1e-6;
 /// No larger factor is sought: a normal distribution of a large cv has too many strengths of zero.
 constexpr double kFactorMax = 1e9;
 
+/// How a strength scatters: its distribution and cv.
+using Law = std::pair<StrengthDistribution, double>;
+
+Law law_of(const StrengthScatter& scatter, std::size_t connection) {
+  return {scatter.distribution_of(connection), scatter.cv_of(connection)};
+}
+
 /// What becomes of the connections of one robot whose load ratios are divided by one factor.
 class Product {
  public:
   /// All load ratios change by `more`; those that are positive then are taken.
   Product(std::span<const double> ratios, const StrengthScatter& scatter, double more) {
-    std::map<double, std::vector<double>> by_cv;
+    std::map<Law, std::vector<double>> by_law;
     for (std::size_t i = 0; i < ratios.size(); ++i) {
       if (ratios[i] + more > kLoadRatioTie) {
-        by_cv[scatter.cv_of(i)].push_back(ratios[i] + more);
+        by_law[law_of(scatter, i)].push_back(ratios[i] + more);
       }
     }
-    for (auto& [cv, some] : by_cv) {
+    for (auto& [law, some] : by_law) {
       std::ranges::sort(some, std::ranges::greater());
       largest_ = std::max(largest_, some.front());
-      groups_.push_back({ScatteredFactor(scatter.distribution, cv), std::move(some)});
+      groups_.push_back({ScatteredFactor(law.first, law.second), std::move(some)});
     }
   }
 
@@ -229,17 +236,17 @@ std::vector<FailingConnection> likeliest(std::span<const LoadCase> cases,
   if (known == cases.end() || fails <= 0) {
     return list;
   }
-  std::map<double, std::vector<std::size_t>> by_cv;
+  std::map<Law, std::vector<std::size_t>> by_law;
   for (std::size_t i = 0; i < known->ratios.size(); ++i) {
     if (known->ratios[i] > kLoadRatioTie) {
-      by_cv[scatter.cv_of(i)].push_back(i);
+      by_law[law_of(scatter, i)].push_back(i);
     }
   }
-  for (auto& [cv, some] : by_cv) {
+  for (auto& [law, some] : by_law) {
     std::ranges::stable_sort(some, std::ranges::greater(),
                              [&](std::size_t i) { return known->ratios[i]; });
     some.resize(std::min(some.size(), cases.size() > 1 ? kLookedAtMax : kLikeliestMax));
-    const ScatteredFactor own(scatter.distribution, cv);
+    const ScatteredFactor own(law.first, law.second);
     for (const std::size_t i : some) {
       const double alone = mean_over_common(scatter, [&](double common) {
         double sum = 0;

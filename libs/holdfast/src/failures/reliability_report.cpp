@@ -34,7 +34,9 @@ std::string scatter_text(const verdict::StrengthScatter& scatter) {
   if (scatter.common_cv > 0) {
     text += fmt::format(" each, +-{:.4g} % together", 100 * scatter.common_cv);
   }
-  if (scatter.distribution != verdict::StrengthDistribution::kLognormal) {
+  if (!scatter.own_distribution.empty()) {
+    text += ", of several distributions";
+  } else if (scatter.distribution != verdict::StrengthDistribution::kLognormal) {
     text += fmt::format(", {}", name(scatter.distribution));
   }
   if (const double masses = mass_cv(scatter); masses > 0) {
