@@ -230,7 +230,8 @@ LoadRange whole_range(const Assessment& assessment) {
 /// The connections that fail most often, by falling share. Of those that scatter alike the ones
 /// with the largest load ratio are looked at, of the first case that is known.
 std::vector<FailingConnection> likeliest(std::span<const LoadCase> cases,
-                                         const StrengthScatter& scatter, double fails) {
+                                         const StrengthScatter& scatter, double fails,
+                                         std::size_t count_max) {
   std::vector<FailingConnection> list;
   const auto known = std::ranges::find(cases, CaseState::kKnown, &LoadCase::state);
   if (known == cases.end() || fails <= 0) {
@@ -245,7 +246,7 @@ std::vector<FailingConnection> likeliest(std::span<const LoadCase> cases,
   for (auto& [law, some] : by_law) {
     std::ranges::stable_sort(some, std::ranges::greater(),
                              [&](std::size_t i) { return known->ratios[i]; });
-    some.resize(std::min(some.size(), cases.size() > 1 ? kLookedAtMax : kLikeliestMax));
+    some.resize(std::min(some.size(), std::max(count_max, cases.size() > 1 ? kLookedAtMax : 0)));
     const ScatteredFactor own(law.first, law.second);
     for (const std::size_t i : some) {
       const double alone = mean_over_common(scatter, [&](double common) {
@@ -260,7 +261,7 @@ std::vector<FailingConnection> likeliest(std::span<const LoadCase> cases,
     }
   }
   std::ranges::stable_sort(list, std::ranges::greater(), &FailingConnection::share);
-  list.resize(std::min(list.size(), kLikeliestMax));
+  list.resize(std::min(list.size(), count_max));
   while (list.size() > 1 && list.back().share < kShareMin) {
     list.pop_back();
   }
@@ -284,7 +285,8 @@ double bound(const std::vector<double>& samples, double direction) {
 
 }  // namespace
 
-Reliability find_reliability(std::span<const LoadCase> cases, const StrengthScatter& scatter) {
+Reliability find_reliability(std::span<const LoadCase> cases, const StrengthScatter& scatter,
+                             std::size_t likeliest_max) {
   const Cases all(cases, scatter);
   Reliability found{.scatter = scatter};
   found.fails = clamped(all.fails(1));
@@ -295,7 +297,7 @@ Reliability find_reliability(std::span<const LoadCase> cases, const StrengthScat
     found.holds_low = std::min(found.holds, bound(all.each_holds(0), -1));
     found.holds_high = std::max(found.holds, bound(all.each_holds(1), 1));
   }
-  found.likeliest = likeliest(cases, scatter, found.fails);
+  found.likeliest = likeliest(cases, scatter, found.fails, likeliest_max);
   found.strength_factor_99 = strength_factor(all, 0.01);
   found.strength_factor_999 = strength_factor(all, 0.001);
   return found;
@@ -324,7 +326,8 @@ std::optional<std::vector<double>> known_ratios(const Assessment& assessment) {
 
 std::optional<Reliability> find_reliability(const Assessment& assessment,
                                             const StrengthScatter& scatter,
-                                            const SampledMasses& sampled) {
+                                            const SampledMasses& sampled,
+                                            std::size_t likeliest_max) {
   auto ratios = known_ratios(assessment);
   if (!ratios) {
     return std::nullopt;
@@ -332,7 +335,7 @@ std::optional<Reliability> find_reliability(const Assessment& assessment,
   const LoadCase one{.ratios = *std::move(ratios)};
   const auto cases =
       sampled.cases.empty() ? std::span(&one, 1) : std::span<const LoadCase>(sampled.cases);
-  Reliability found = find_reliability(cases, scatter);
+  Reliability found = find_reliability(cases, scatter, likeliest_max);
   found.sample_count = sampled.cases.size();
   found.changed_count = sampled.changed_count;
   if (assessment.load_ratio_max) {

@@ -132,7 +132,7 @@ std::optional<StrengthScatter> find_scatter(const io::Extension& extension,
 std::optional<verdict::Reliability> find_reliability(const AssessedRobot& assessed,
                                                      const StrengthScatter& scatter,
                                                      const CheckOptions& options) {
-  const auto& [robot, assessment, spec, safety_factor] = assessed;
+  const auto& [robot, assessment, spec, safety_factor, likeliest_max] = assessed;
   verdict::SampledMasses sampled;
   if (!scatter.mass_cv.empty()) {
     const CheckOptions how{.is_bonded = assessment.contact_model == verdict::ContactModel::kBonded,
@@ -149,7 +149,7 @@ std::optional<verdict::Reliability> find_reliability(const AssessedRobot& assess
     sampled = verdict::sample_masses(robot, assessment, scatter.mass_cv, sampling);
   }
   if (safety_factor == 1) {
-    return verdict::find_reliability(assessment, scatter, sampled);
+    return verdict::find_reliability(assessment, scatter, sampled, likeliest_max);
   }
   for (verdict::LoadCase& one : sampled.cases) {
     for (double& ratio : one.ratios) {
@@ -157,20 +157,22 @@ std::optional<verdict::Reliability> find_reliability(const AssessedRobot& assess
     }
   }
   return verdict::find_reliability(with_strengths_as_given(assessment, safety_factor), scatter,
-                                   sampled);
+                                   sampled, likeliest_max);
 }
 
 std::optional<verdict::Reliability> find_reliability(const Structure& structure,
                                                      const CheckResult& result,
                                                      const StrengthScatter& scatter,
-                                                     const CheckOptions& options) {
+                                                     const CheckOptions& options,
+                                                     std::size_t likeliest_max) {
   const auto spec = scatter.mass_cv.empty() ? base::Result<model::RobotSpec>(model::RobotSpec())
                                             : io::make_spec(structure.document);
   const bool is_whole = spec && !spec.value().existing.empty();
   return find_reliability({.robot = structure.robot,
                            .assessment = result.assessment,
                            .spec = is_whole ? &spec.value() : nullptr,
-                           .safety_factor = structure.document.safety_factor},
+                           .safety_factor = structure.document.safety_factor,
+                           .likeliest_max = likeliest_max},
                           scatter, options);
 }
 

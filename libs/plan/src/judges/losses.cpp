@@ -322,6 +322,7 @@ class LossSearch {
   void conclude(LossReport& report) const {
     const double largest = largest_ratio();
     for (const auto& answer : answers_) {
+      report.answers.push_back(*answer);
       if (answer->is_fatal()) {
         report.fatal.push_back(*answer);
       } else if (answer->verdict != Verdict::kSafe) {
