@@ -248,6 +248,8 @@ def commands(scenarios, tests):
     yield ['steps', 'grows.json', '--scatter', '10%', '--probability', '0.9', '--lose-one']
     yield from (['next', path] for path in (safe, topples, *general))
     yield ['next', 'large.json']
+    yield ['next', safe, '--scatter', '10%', '--probability', '0.9', '--limit', '3']
+    yield ['next', safe, '--lose-one', '--lose', 'connections,feet']
     yield ['next', 'cube.json', '--seconds', '0']
     yield ['order', 'cube.json', '--reverse']
     yield ['order', 'cube.json', '--reach', 'line', '--from', 'row.json']

@@ -60,6 +60,60 @@ expect_exit 2 check cube.json --lose-one --lose-seconds 0
 expect_exit 1 check "$unstable" --lose-one
 expect_line out '^  lose one    not tried'
 
+# Tables and pictures have the loss of each connection, module and facet, as the report has it.
+expect_exit 1 check "$safe" --lose-one --scatter 30% --csv loss.csv --vtk loss.vtu --json loss.json
+python3 - <<'END' || fault 'losses in tables and pictures'
+import csv
+import json
+import math
+import re
+import struct
+import zlib
+
+report = json.load(open('loss.json'))
+rows = list(csv.DictReader(open('loss.csv')))
+lost = report['lose_one']
+fatal = {(tuple(x['a']), tuple(x['b'])): x for x in lost['fatal'] if 'a' in x}
+shares = {(tuple(x['a']), tuple(x['b'])): x['share'] for x in report['reliability']['likeliest']}
+assert len(rows) == len(report['connections'])
+for row in rows:
+    pair = tuple(tuple(int(row[end + axis]) for axis in 'xyz') for end in 'ab')
+    assert (row['loss_outcome'] == '3') == (pair in fatal) and row['loss_outcome'] in '13', row
+    if pair in fatal and fatal[pair]['verdict'] == 'overload':
+        assert float(row['loss_load_ratio']) == fatal[pair]['load_ratio_max'], row
+    if pair in shares:
+        assert float(row['fail_share']) == shares[pair], row
+assert len(fatal) > 1 and len(shares) > 1
+
+data = open('loss.vtu', 'rb').read()
+head, body = data.split(b'<AppendedData encoding="raw">\n_', 1)
+
+
+def field(name):
+    offset = int(re.search(b'Name="' + name + b'"[^>]*offset="([0-9]+)"', head)[1])
+    count = struct.unpack_from('<Q', body, offset)[0]
+    sizes = struct.unpack_from(f'<{count}Q', body, offset + 24)
+    at, raw = offset + 24 + 8 * count, b''
+    for size in sizes:
+        raw += zlib.decompress(body[at:at + size])
+        at += size
+    return struct.unpack(f'<{len(raw) // 8}d', raw)
+
+
+modules, facets = report['modules'], len(report['contacts']) if 'contacts' in report else None
+outcome, share, ratio = field(b'loss_outcome'), field(b'fail_share'), field(b'loss_load_ratio')
+count = modules if isinstance(modules, int) else modules['existing'] + modules['planned']
+of_connections = outcome[count:count + len(rows)]
+assert [float(row['loss_outcome']) for row in rows] == list(of_connections)
+for row, got, bound in zip(rows, share[count:], ratio[count:]):
+    for wanted, found in ((float(row['fail_share']), got), (float(row['loss_load_ratio']), bound)):
+        assert math.isclose(0 if math.isnan(wanted) else wanted, found, rel_tol=1e-8)
+kinds = {'module': outcome[:count].count(3), 'foot': outcome[count + len(rows):].count(3)}
+for kind, found in kinds.items():
+    assert found == sum(kind in x for x in lost['fatal']), (kind, found)
+assert outcome[:count].count(0) == 0
+END
+
 # What follows the break: an arm held at one end, of which five modules are too many.
 cat >arm.json <<'END'
 {"format": "holdfast-structure", "version": 1, "support_z": -1,

@@ -29,6 +29,10 @@ for name, value in (('high', 3), ('zero', 0), ('negative', -0.1), ('text', '10%'
 robot['material'] = {}
 robot['kinds'] = {}
 robot['modules'][0] = robot['modules'][0]['cell']
+robot['connections'] = [{'between': [[3, 1, 2], [2, 1, 2]], 'strength_cv': 0.3}]
+json.dump(robot, open('one.json', 'w'))
+robot['connections'][0]['strength_distribution'] = 'weibull'
+json.dump(robot, open('one_weibull.json', 'w'))
 for name, share in (('half', 0.5), ('most', 0.8)):
     robot['connections'] = [{'between': [[2, 1, 2], [3, 1, 2]], 'strength_n': 14.97 * share}]
     json.dump(robot, open(f'{name}.json', 'w'))
@@ -51,6 +55,35 @@ for file in kinds.json again.json kinds.xml; do
   expect_exit 0 check "$file"
   expect_line out 'strengths up to \+-40 %, weibull, masses up to \+-10 %'
 done
+# One connection scatters: the probability is its own, of lognormal and of Weibull strengths;
+# options override it.
+expect_exit 0 convert one.json one.xml
+for file in one.json one.xml one_weibull.json; do
+  expect_exit 0 check "$file" --json one_report.json
+  python3 - one_report.json "$file" <<'END' || fault "strength_cv of one connection in $file"
+import json
+import math
+import sys
+report = json.load(open(sys.argv[1]))
+ratio = next(c['load_ratio'] for c in report['connections']
+             if sorted([c['a'], c['b']]) == [[2, 1, 2], [3, 1, 2]])
+if 'weibull' in sys.argv[2]:
+    low, high = 1.0, 20.0  # The exponent of which the cv is 0.3.
+    for _ in range(200):
+        k = (low + high) / 2
+        cv = math.sqrt(math.gamma(1 + 2 / k) / math.gamma(1 + 1 / k)**2 - 1)
+        low, high = (k, high) if cv > 0.3 else (low, k)
+    fails = -math.expm1(-(ratio * math.gamma(1 + 1 / k))**k)
+else:
+    spread = math.sqrt(math.log(1 + 0.3**2))
+    fails = math.erfc(-(math.log(ratio) + spread**2 / 2) / spread / math.sqrt(2)) / 2
+found = report['reliability']
+assert abs(found['probability_fails'] / fails - 1) < 1e-6, (found, fails)
+assert found['strength_cv'] == 0.3 and found['likeliest'][0]['share'] > 0.999
+END
+done
+expect_exit 0 check one.json --scatter 20% --json one_report.json
+[ "$(probability one_report.json)" = "$(probability sure.json)" ] || fault 'options override'
 for bad in high zero negative text; do
   expect_exit 65 check "$bad.json"
   expect_line err 'strength_cv'
@@ -151,5 +184,46 @@ for bad in '{"pull": "vertical", "broke_n": 0}' '{"pull": "vertical", "broke_n":
   expect_exit 65 fit experiments.json
 done
 
+# A place of `next` is safe if a check of the robot with it says so.
+python3 - "$program" "$scenarios/crane_breaks_a.json" <<'END' || fault 'places of next'
+import json
+import subprocess
+import sys
+program, crane = sys.argv[1:]
+block = {'format': 'holdfast-structure', 'version': 2,
+         'modules': [[x, y, z] for x in range(3) for y in range(3) for z in range(2)]}
+json.dump(block, open('block.json', 'w'))
+
+
+def run(*arguments):
+    done = subprocess.run([program, *arguments, '--quiet', '--json', '-'], text=True,
+                          stdout=subprocess.PIPE, check=False)
+    return done.returncode, json.loads(done.stdout)
+
+
+counts = {'safe': 0, 'unsafe': 0}
+for file, options in ((crane, ['--scatter', '10%', '--probability', '0.9']),
+                      ('block.json', ['--lose-one']), (crane, ['--lose-one'])):
+    code, places = run('next', file, *options)
+    assert code == (0 if places['counts']['safe'] else 1), code
+    robot = json.load(open(file))
+    for place in places['candidates'][::3]:
+        grown = dict(robot, planned=robot.get('planned', []) + [place['cell']])
+        json.dump(grown, open('grown.json', 'w'))
+        code, report = run('check', 'grown.json', *options)
+        assert (code == 0) == (place['verdict'] == 'safe'), (place, code)
+        counts['safe' if code == 0 else 'unsafe'] += 1
+        if report['verdict'] == 'safe' and '--scatter' in options:
+            expected = report['reliability']['probability_holds']
+            assert abs(place['probability_holds'] - expected) < 1e-9, (place, expected)
+        if report['verdict'] == 'safe' and report.get('lose_one', {}).get('fatal'):
+            assert place['reason'] == 'lose_one' and place['fatal'], place
+assert min(counts.values()) > 5, counts
+END
+expect_exit 64 next "$safe" --lose modules
+expect_exit 65 next "$safe" --probability 0.9
+expect_line err 'nothing is known to scatter'
+expect_exit 0 next "$safe" --scatter 10% --probability 0.5 --limit 2
+expect_line out 'judged [0-9]+ of 37 places; the rest is open'
 [ "$faults" -eq 0 ] || exit 1
 echo "strengths: all as expected"

@@ -76,6 +76,13 @@ _holdfast() {
         --support-z) : ;;
         --pitch) : ;;
         --safety-factor|--margin) : ;;
+        --scatter) : ;;
+        --scatter-common) : ;;
+        --scatter-mass) : ;;
+        --scatter-law) words="lognormal normal weibull" ;;
+        --probability) : ;;
+        --lose) : ;;
+        --lose-seconds) : ;;
         --json) files=1 ;;
         --csv) files=1 ;;
         --svg) files=1 ;;

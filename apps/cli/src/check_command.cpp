@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <limits>
 #include <memory>
 
 #include "commands.hpp"
@@ -180,7 +181,12 @@ class CheckRun {
   struct MoreAnswers {
     std::string text;
     std::vector<std::function<void(io::JsonStream&)>> members;
+    std::vector<io::MoreNumbers> numbers;  ///< Of tables and .vtu files.
     std::optional<plan::Cascade> cascade;
+
+    void add(std::vector<io::MoreNumbers> more) {
+      std::ranges::move(more, std::back_inserter(numbers));
+    }
   };
 
   MoreAnswers find_more(const Structure& structure, const CheckResult& result,
@@ -189,7 +195,11 @@ class CheckRun {
                         const std::string& file) {
     MoreAnswers more;
     if (scatter) {
-      const auto reliability = find_reliability(structure, result, *scatter, how);
+      const bool is_table_wanted = !options_.csv.empty() || !options_.vtk.empty();
+      const auto reliability = find_reliability(
+          structure, result, *scatter, how,
+          is_table_wanted ? std::numeric_limits<std::size_t>::max() : verdict::kLikeliestMax);
+      more.add(reliability_numbers(structure.robot, reliability));
       count_exit(exit_code_of(options_.scatter, reliability));
       more.text += reliability_text(structure.robot, reliability);
       more.members.emplace_back([&structure, scatter, reliability](io::JsonStream& json) {
@@ -206,6 +216,7 @@ class CheckRun {
       const plan::LossReport report = lose_one(structure, options);
       count_exit(exit_code_of(report));
       more.text += lose_one_text(report);
+      more.add(lose_one_numbers(structure.robot, report));
       more.members.emplace_back([&structure, report](io::JsonStream& json) {
         write_lose_one_member(json, structure.robot, report);
       });
@@ -248,7 +259,7 @@ class CheckRun {
   void write_files(const Structure& structure, const CheckResult& result, const MoreAnswers& more) {
     if (!options_.csv.empty()) {
       write(options_.csv, [&](std::ostream& out) {
-        write_connections_csv(out, structure, result, report_options(options_.csv));
+        write_connections_csv(out, structure, result, report_options(options_.csv, more.numbers));
       });
     }
     const bool is_drawn =
@@ -259,7 +270,7 @@ class CheckRun {
     bad_count_ += is_drawn ? 0 : 1;
     if (!options_.vtk.empty() && !options_.writes_series()) {
       write(options_.vtk, [&](std::ostream& out) {
-        write_picture_vtu(out, structure, result, report_options(options_.vtk));
+        write_picture_vtu(out, structure, result, report_options(options_.vtk, more.numbers));
       });
     }
     if (!options_.html.empty()) {
@@ -366,8 +377,10 @@ class CheckRun {
     }
   }
 
-  io::ReportOptions report_options(const std::string& path) {
+  io::ReportOptions report_options(const std::string& path,
+                                   std::vector<io::MoreNumbers> more = {}) {
     io::ReportOptions options;
+    options.more = std::move(more);
     options.thread_count = options_.thread_count;
     options.connections = *io::find_connection_choice(options_.connections);
     if (!options_.is_quiet) {

@@ -20,6 +20,7 @@ namespace {
 using verdict::Verdict;
 
 struct NextArguments {
+  PlanFailureOptions failures;
   Reading reading;
   std::string file;
   std::string json;
@@ -82,10 +83,11 @@ int run(const NextArguments& options) {
       .thread_count = options.thread_count,
       .memory_bytes_max = static_cast<std::size_t>(options.memory_gb * 1073741824.0)};
   const Interruption interruption;
-  const NextResult result = find_next(
+  const bool has_failures = options.failures.is_wanted();
+  NextResult result = find_next(
       structure.value(), {.check = check_options,
                           .is_exact = options.is_exact,
-                          .best_count = options.report.count_max,
+                          .best_count = has_failures ? 0 : options.report.count_max,
                           .seconds_max = options.seconds,
                           .is_interrupted = Interruption::is_here,
                           .progress = [&](std::size_t done, std::size_t count) {
@@ -94,6 +96,15 @@ int run(const NextArguments& options) {
                                                  done, host::counted(count, "place"));
                             });
                           }});
+  if (has_failures) {
+    const NextFailuresLimits limits{.safe_count_max = options.report.count_max,
+                                    .seconds_max = options.seconds - result.seconds,
+                                    .is_interrupted = Interruption::is_here};
+    PlanFailuresWish wish = plan_failures_wish(options.failures, check_options, progress, "place");
+    if (const auto error = find_next_failures(structure.value(), wish, limits, result)) {
+      return fail(*error, options.file);
+    }
+  }
   if (!options.is_quiet && leaves_standard_output(options.outputs())) {
     fmt::print("{}", next_text(structure.value(), result, options.report));
   }
@@ -119,6 +130,7 @@ Command add_next(CLI::App& app) {
   add_required(*command, "FILE", options->file, kStructureHelp);
   add_reading(*command, options->reading);
   add_safety_factor(*command, options->reading);
+  add_plan_failure_options(*command, options->failures);
   add_output(*command, "--json", options->json, "Write the places as JSON; - is standard output");
   add_output(*command, "--csv", options->csv,
              "Write the places as a table, CSV; - is standard output");
@@ -154,7 +166,8 @@ Command add_next(CLI::App& app) {
                     {"next arm.json --svg places.svg", "draw every place"}},
        .notes = "Places are listed best first: the safe ones by ascending load ratio, then "
                 "undecided, overload and unstable ones. A place has the verdict of holdfast "
-                "check with a planned module there.",
+                "check with a planned module there. With --probability or --lose-one a place is "
+                "safe only if the robot with it holds so.",
        .exits = {{kExitSafe, "a place is safe"},
                  {kExitUnsafe, "no place is safe"},
                  {kExitUndecided, "no place is known to be safe, but some are undecided or open"},

@@ -9,6 +9,18 @@ void add_plan_failure_options(CLI::App& command, PlanFailureOptions& options) {
   add_lose_one_options(command, options.lose_one);
 }
 
+PlanFailuresWish plan_failures_wish(const PlanFailureOptions& options, const CheckOptions& check,
+                                    Progress& progress, const char* what) {
+  return {.is_scatter_wanted = options.scatter.is_wanted(),
+          .scatter = read_scatter(options.scatter),
+          .probability = options.scatter.probability,
+          .is_lose_one_wanted = options.lose_one.is_wanted,
+          .lose_one = lose_one_options(options.lose_one, check),
+          .progress = [&progress, what](std::size_t count) {
+            progress.show([&] { return fmt::format("{} looked at", host::counted(count, what)); });
+          }};
+}
+
 base::Result<PlanFailureAnswer> find_plan_failures(const io::Document& document,
                                                    const PlanFailureOptions& options,
                                                    int thread_count, Progress& progress) {
@@ -16,15 +28,8 @@ base::Result<PlanFailureAnswer> find_plan_failures(const io::Document& document,
   if (!options.is_wanted()) {
     return answer;
   }
-  PlanFailuresWish wish{
-      .is_scatter_wanted = options.scatter.is_wanted(),
-      .scatter = read_scatter(options.scatter),
-      .probability = options.scatter.probability,
-      .is_lose_one_wanted = options.lose_one.is_wanted,
-      .lose_one = lose_one_options(options.lose_one, {.thread_count = thread_count})};
-  wish.progress = [&progress](std::size_t step) {
-    progress.show([&] { return fmt::format("{} looked at", host::counted(step, "step")); });
-  };
+  const PlanFailuresWish wish =
+      plan_failures_wish(options, {.thread_count = thread_count}, progress, "step");
   const auto found = holdfast::find_plan_failures(document, wish);
   if (!found) {
     return found.error();

@@ -23,6 +23,10 @@ struct PlanFailureOptions {
 
 void add_plan_failure_options(CLI::App& command, PlanFailureOptions& options);
 
+/// What they ask for; `what` is counted, such as "step".
+PlanFailuresWish plan_failures_wish(const PlanFailureOptions& options, const CheckOptions& check,
+                                    Progress& progress, const char* what);
+
 /// The answer to them, for reports.
 struct PlanFailureAnswer {
   std::string text;

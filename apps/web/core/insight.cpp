@@ -15,29 +15,6 @@ constexpr double kNothing = 1e-6;
 
 std::size_t as_index(std::int32_t value) { return static_cast<std::size_t>(value); }
 
-/// The modules that are joined to one without a connection; empty if one of them is supported, or
-/// is the connection's other end.
-std::vector<std::size_t> unsupported_part(const model::Robot& robot, std::size_t start,
-                                          std::size_t beyond) {
-  std::vector<bool> is_found(robot.modules().size(), false);
-  std::vector<std::size_t> part = {start};
-  is_found[start] = true;
-  for (std::size_t next = 0; next < part.size(); ++next) {
-    if (robot.modules()[part[next]].support != model::Support::kNone) {
-      return {};
-    }
-    for (const std::int32_t beside : robot.connected()[part[next]]) {
-      const bool is_module = beside != model::Robot::kNoNeighbour;
-      const bool is_cut = is_module && part[next] == start && as_index(beside) == beyond;
-      if (is_module && !is_cut && !is_found[as_index(beside)]) {
-        is_found[as_index(beside)] = true;
-        part.push_back(as_index(beside));
-      }
-    }
-  }
-  return is_found[beyond] ? std::vector<std::size_t>{} : part;
-}
-
 struct Lump {
   double mass_kg = 0;
   std::array<double, 3> centre_mm{};
@@ -91,9 +68,27 @@ std::string actions_text(const verdict::ConnectionResult& load) {
 }  // namespace
 
 std::vector<std::size_t> hanging_modules(const model::Robot& robot, std::size_t connection) {
+  model::ConnectedParts parts = model::connected_parts(
+      robot.connections(), robot.modules().size(),
+      [&](std::size_t index, const model::Connection&) { return index != connection; });
   const model::Connection& pair = robot.connections()[connection];
-  auto part = unsupported_part(robot, as_index(pair.a), as_index(pair.b));
-  return part.empty() ? unsupported_part(robot, as_index(pair.b), as_index(pair.a)) : part;
+  if (parts.first_of(pair.a) == parts.first_of(pair.b)) {
+    return {};
+  }
+  for (const std::int32_t end : {pair.a, pair.b}) {
+    std::vector<std::size_t> part;
+    bool is_held = false;
+    for (std::size_t i = 0; i < robot.modules().size(); ++i) {
+      if (parts.first_of(static_cast<std::int32_t>(i)) == parts.first_of(end)) {
+        part.push_back(i);
+        is_held = is_held || robot.modules()[i].support != model::Support::kNone;
+      }
+    }
+    if (!is_held) {
+      return part;
+    }
+  }
+  return {};
 }
 
 std::string why_text(const model::Robot& robot, const verdict::Assessment& assessment) {

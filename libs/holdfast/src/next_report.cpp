@@ -18,6 +18,31 @@ std::span<const Trial> listed(const NextResult& result, const NextReportOptions&
   return options.count_max == 0 ? all : all.first(std::min(all.size(), options.count_max));
 }
 
+/// Why a place is not safe that a check alone would not tell; null if nothing is to be said.
+const char* reason_of(const Trial& trial) {
+  const TrialFailures& failures = trial.failures;
+  return trial.is_bent                                                ? "second_order"
+         : failures.is_improbable                                     ? "probability"
+         : !failures.fatal_loss.empty() || failures.is_loss_undecided ? "lose_one"
+                                                                      : nullptr;
+}
+
+/// "  holds with probability 0.998", "  without (1,1,0)-(2,1,0)".
+std::string failures_words(const TrialFailures& failures) {
+  std::string text;
+  if (failures.has_probability) {
+    text += failures.probability_holds
+                ? fmt::format("  holds with probability {:.3g}", *failures.probability_holds)
+                : std::string("  probability not known");
+  }
+  if (!failures.fatal_loss.empty()) {
+    text += fmt::format("  without {}", failures.fatal_loss);
+  } else if (failures.is_loss_undecided) {
+    text += "  not certain after every loss";
+  }
+  return text;
+}
+
 }  // namespace
 
 void write_candidate(io::JsonStream& json, const Trial& trial) {
@@ -29,8 +54,14 @@ void write_candidate(io::JsonStream& json, const Trial& trial) {
     json.member("load_ratio_bound", trial.load_ratio_bound);
   }
   json.member("margin_mm", trial.margin_mm);
-  if (trial.is_bent) {
-    json.member("reason", "second_order");
+  if (const char* const reason = reason_of(trial)) {
+    json.member("reason", reason);
+  }
+  if (trial.failures.has_probability) {
+    json.member("probability_holds", trial.failures.probability_holds);
+  }
+  if (!trial.failures.fatal_loss.empty()) {
+    json.member("fatal", std::string_view(trial.failures.fatal_loss));
   }
   json.end_object();
 }
@@ -96,8 +127,8 @@ std::string next_text(const Structure& structure, const NextResult& result,
                                                      : std::string("-");
     const std::string margin =
         trial.margin_mm ? host::fixed(*trial.margin_mm, 2) + " mm" : std::string("-");
-    text += fmt::format("  {:<10} {:>10} {:>12}  {}\n", verdict::name(trial.verdict), ratio, margin,
-                        model::text(trial.cell));
+    text += fmt::format("  {:<10} {:>10} {:>12}  {}{}\n", verdict::name(trial.verdict), ratio,
+                        margin, model::text(trial.cell), failures_words(trial.failures));
   }
   if (list.size() < result.candidates.size()) {
     text += fmt::format("  ... and {} more\n", result.candidates.size() - list.size());

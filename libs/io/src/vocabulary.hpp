@@ -121,11 +121,13 @@ constexpr bool is_strength_key(std::string_view key) {
                          "shear_strength_n", "torsion_strength_nmm"});
 }
 
-/// How strengths and masses scatter: keys of the material, and but for the last of kinds.
+/// How strengths and masses scatter: keys of the material, some of kinds and of connections.
 inline constexpr auto kScatterKeys =
     std::to_array<std::string_view>({"strength_cv", "mass_cv", "strength_distribution"});
 inline constexpr auto kKindScatterKeys =
     std::to_array<std::string_view>({kScatterKeys[0], kScatterKeys[1]});
+inline constexpr auto kConnectionScatterKeys =
+    std::to_array<std::string_view>({kScatterKeys[0], kScatterKeys[2]});
 
 /// The key of the material for the width of the facets of modules that are no cubes.
 inline constexpr std::string_view kFootKey = "foot_mm";
@@ -140,8 +142,8 @@ inline constexpr auto kKindKeys =
 inline constexpr auto kBendingNames = std::to_array<std::string_view>({"square", "round"});
 /// The keys of a connection that a file names.
 inline constexpr std::string_view kBetweenKey = "between";
-inline constexpr auto kConnectionKeys =
-    joined(std::to_array<std::string_view>({kBetweenKey}), kConnectorKeys);
+inline constexpr auto kConnectionKeys = joined(
+    joined(std::to_array<std::string_view>({kBetweenKey}), kConnectorKeys), kConnectionScatterKeys);
 /// Names of which neighbours are joined: all but the open ones, or those that "connections" lists.
 inline constexpr auto kJoinedNames = std::to_array<std::string_view>({"all", "listed"});
 inline constexpr auto kFloorKeys = std::to_array<std::string_view>({"friction"});

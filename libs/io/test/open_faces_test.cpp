@@ -97,7 +97,8 @@ TEST(OpenFaces, connections_have_the_laws_of_their_kinds_else) {
 TEST(OpenFaces, are_kept_by_all_formats) {
   const std::string all =
       hanging(std::string(kOpen) + R"("connections": [{"between": [[1,0,4],[0,0,4]],
-              "strength_n": 2, "friction": 0.5, "bending": "round"}],)");
+              "strength_n": 2, "friction": 0.5, "bending": "round", "strength_cv": 0.25,
+              "strength_distribution": "weibull"}],)");
   const Document document = read_document(all).value().document;
   ASSERT_EQ(document.extension.open.size(), 4U);
   const auto json = read_document(write_json(document));
@@ -106,6 +107,17 @@ TEST(OpenFaces, are_kept_by_all_formats) {
   const auto xml = read_document(write_visiblesim(document));
   ASSERT_TRUE(xml) << xml.error().message;
   EXPECT_EQ(xml.value().document.extension, document.extension);
+}
+
+/// How a connection scatters is its own, and no other law of what it carries.
+TEST(OpenFaces, connections_that_only_scatter_carry_what_they_did) {
+  const std::string only = hanging(std::string(kOpen) +
+                                   R"("connections": [{"between": [[1,0,4],[0,0,4]],
+                                   "strength_cv": 0.25}],)");
+  EXPECT_EQ(assess(only).load_ratio_max, assess(hanging(kOpen)).load_ratio_max);
+  const auto robot = make_robot(read_document(only).value().document);
+  ASSERT_TRUE(robot) << robot.error().message;
+  EXPECT_TRUE(robot.value().has_default_connectors());
 }
 
 /// A pair may be of modules that later steps attach; it counts when both are there.
@@ -136,6 +148,12 @@ TEST(OpenFaces, that_are_none_are_refused) {
   expect(R"("open": [[[0,0,1],[1,0,1]]], "connections": [{"between": [[1,0,1],[0,0,1]]}],)",
          "/open/0: ", "twice");
   expect(R"("connections": [{"strength_n": 2}],)", "/connections/0: ", "between");
+  expect(R"("connections": [{"between": [[0,0,0],[0,0,1]], "strength_cv": 3}],)",
+         "/connections/0/strength_cv: ", "from 0.0001 to 1");
+  expect(R"("connections": [{"between": [[0,0,0],[0,0,1]], "mass_cv": 0.1}],)",
+         "/connections/0/mass_cv: ", "unknown");
+  expect(R"("connections": [{"between": [[0,0,0],[0,0,1]], "strength_distribution": "flat"}],)",
+         "/connections/0/strength_distribution: ", "weibull");
   expect(R"("connections": [{"between": [[0,0,0],[0,0,1]], "strength": 2}],)",
          "/connections/0/strength: ", "unknown");
   expect(R"("connections": [{"between": [[0,0,0],[0,0,1]], "strength_n": -2}],)",

@@ -339,7 +339,6 @@ std::optional<std::string> Robot::take_kinds(const RobotSpec& spec, const CellIn
 
 std::optional<std::string> Robot::take_own_connectors(const RobotSpec& spec,
                                                       const CellIndex& index) {
-  has_default_connectors_ = has_default_connectors_ && spec.own_connectors.empty();
   for (const OwnConnector& own : spec.own_connectors) {
     const auto direction = direction_between(lattice_, own.between);
     const std::int32_t a = index.find(own.between[0]);
@@ -352,7 +351,13 @@ std::optional<std::string> Robot::take_own_connectors(const RobotSpec& spec,
     const auto along = base::at(base::index(is_first ? *direction : base::opposite(*direction)));
     own_connectors_.emplace_back(base::at(is_first ? a : b) * lattice_count() + along,
                                  connectors_.size());
+    const bool is_of_kinds =
+        own.law == connector(modules_[base::at(is_first ? a : b)].kind,
+                             modules_[base::at(is_first ? b : a)].kind,
+                             is_first ? *direction : base::opposite(*direction));
+    has_default_connectors_ = has_default_connectors_ && is_of_kinds;
     connectors_.push_back(own.law);
+    own_tags_.push_back(own.tag);
   }
   std::ranges::sort(own_connectors_);
   const auto twice =
@@ -377,6 +382,15 @@ const ConnectorLaw* Robot::find_own_connector(const Connection& connection) cons
                                               [](const auto& own) { return own.first; });
   return found != own_connectors_.end() && found->first == place ? &connectors_[found->second]
                                                                  : nullptr;
+}
+
+std::int32_t Robot::connector_tag(const Connection& connection) const {
+  const ConnectorLaw* const own = find_own_connector(connection);
+  if (own == nullptr) {
+    return OwnConnector::kNoTag;
+  }
+  const std::size_t first = connectors_.size() - own_tags_.size();
+  return own_tags_[static_cast<std::size_t>(own - connectors_.data()) - first];
 }
 
 std::optional<std::string> Robot::take_loads(const RobotSpec& spec, const CellIndex& index) {

@@ -8,9 +8,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <functional>
-#include <numeric>
 #include <utility>
 #include <vector>
+
+#include "holdfast/model/connected_parts.hpp"
 
 namespace holdfast::model {
 namespace {
@@ -186,46 +187,9 @@ std::optional<std::string> find_general_fault(const RobotSpec& spec) {
   return fault;
 }
 
-/// Finds which modules are connected with each other [Galler and Fischer 1964].
-class Parts {
- public:
-  explicit Parts(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-
-  /// The smallest member of the part.
-  std::int32_t find(std::int32_t module) {
-    std::int32_t& parent = parent_[static_cast<std::size_t>(module)];
-    while (parent != parent_[static_cast<std::size_t>(parent)]) {
-      parent = parent_[static_cast<std::size_t>(parent)];
-    }
-    return parent;
-  }
-
-  void join(std::int32_t a, std::int32_t b) {
-    a = find(a);
-    b = find(b);
-    if (a != b) {
-      parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-    }
-  }
-
- private:
-  std::vector<std::int32_t> parent_;
-};
-
-/// The lists of the first `count` modules that are together, each ascending, the largest first.
-std::vector<std::vector<std::int32_t>> lists_of(Parts& parts, std::size_t count) {
-  std::vector<std::int32_t> place(count, -1);
-  std::vector<std::vector<std::int32_t>> lists;
-  for (std::int32_t i = 0; i < static_cast<std::int32_t>(count); ++i) {
-    std::int32_t& here = place[base::at(parts.find(i))];
-    if (here < 0) {
-      here = static_cast<std::int32_t>(lists.size());
-      lists.emplace_back();
-    }
-    lists[base::at(here)].push_back(i);
-  }
+/// The lists of the first `count` modules that are together, the largest first.
+std::vector<std::vector<std::int32_t>> lists_of(ConnectedParts& parts, std::size_t count) {
+  std::vector<std::vector<std::int32_t>> lists = parts.lists(count);
   std::ranges::stable_sort(lists, std::greater<>(), [](const auto& list) { return list.size(); });
   return lists;
 }
@@ -271,17 +235,15 @@ std::optional<std::string> find_number_fault(const RobotSpec& spec) {
 
 std::vector<std::vector<std::int32_t>> pieces_of(const Connections& connections,
                                                  std::size_t module_count) {
-  Parts parts(module_count);
-  for (const Connection& pair : connections) {
-    parts.join(pair.a, pair.b);
-  }
+  ConnectedParts parts = connected_parts(connections, module_count,
+                                         [](std::size_t, const Connection&) { return true; });
   return lists_of(parts, module_count);
 }
 
 std::optional<std::string> find_connection_fault(const Connections& connections,
                                                  std::span<const Module> modules,
                                                  std::size_t existing_count) {
-  Parts parts(modules.size());
+  ConnectedParts parts(modules.size());
   const auto first_planned = static_cast<std::int32_t>(existing_count);
   for (const Connection& pair : connections) {
     if (pair.a < first_planned && pair.b < first_planned) {
@@ -289,7 +251,7 @@ std::optional<std::string> find_connection_fault(const Connections& connections,
     }
   }
   const auto is_loose = [&](std::size_t i) {
-    return parts.find(static_cast<std::int32_t>(i)) != 0;
+    return parts.first_of(static_cast<std::int32_t>(i)) != 0;
   };
   bool is_any_loose = false;
   for (std::size_t i = 0; i < existing_count && !is_any_loose; ++i) {

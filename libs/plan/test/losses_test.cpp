@@ -314,6 +314,25 @@ TEST(Losses, of_larger_robots_are_as_by_checks_bonded_or_not) {
   EXPECT_GT(bound_count, 0U);
 }
 
+/// Feet in the middle, at edges and at corners, of blocks that stand on them alone.
+TEST(Losses, of_feet_and_of_modules_on_them_need_no_check) {
+  for (const std::int32_t width : {5, 6}) {
+    model::RobotSpec spec;
+    for (std::int32_t i = 0; i < width * 4 * 3; ++i) {
+      const Cell cell{i % width, i / width % 4, i / width / 4};
+      spec.existing.push_back(cell);
+    }
+    LossOptions options{.equilibrium = {.thread_count = 1}};
+    const LossReport fast = lose_each(spec, options);
+    options.is_by_checks = true;
+    const LossReport checked = lose_each(spec, options);
+    EXPECT_EQ(fast.check_count, 0U);
+    EXPECT_EQ(checked.check_count, checked.loss_count);
+    expect_same(fast.fatal, checked.fatal, "block");
+    expect_same(fast.undecided, checked.undecided, "block");
+  }
+}
+
 /// No bound by loops is below what a check without the connection finds.
 TEST(Losses, by_loops_are_bounds_of_what_is_carried) {
   std::size_t compared_count = 0;

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 
 #include "moves.hpp"
@@ -240,6 +241,32 @@ TEST(Transition, takes_the_way_of_a_group_that_is_left_in_any_order_of_its_moves
   model::RobotSpec beside = two_about_one();
   beside.existing.push_back({0, 1, 3});
   expect_way(beside, in_both_orders(Cell{1, 1, 2}, Cell{0, 1, 3}), {2, 0, 0});
+}
+
+/// A connection keeps what it is called by where both of its modules move, and ends with one.
+TEST(RobotState, connections_keep_their_tags_as_groups_move) {
+  model::RobotSpec spec{.existing = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}};
+  const Cell a{2, 0, 0};
+  const Cell b{3, 0, 0};
+  spec.own_connectors.push_back({.between = {b, a}, .law = {}, .tag = 7});
+  spec.own_connectors.push_back({.between = {Cell{0, 0, 0}, Cell{1, 0, 0}}, .law = {}, .tag = 3});
+  const model::Robot robot = model::Robot::create(spec).value();
+  std::vector<std::int32_t> tags;
+  for (const model::Connection& pair : robot.connections()) {
+    tags.push_back(robot.connector_tag(pair));
+  }
+  std::ranges::sort(tags);
+  EXPECT_EQ(tags, (std::vector<std::int32_t>{model::OwnConnector::kNoTag, 3, 7}));
+  RobotState state(spec);
+  const std::array from = {a, b};
+  const std::array to = {Cell{2, 1, 0}, Cell{3, 1, 0}};
+  state.move(from, to);
+  const model::RobotSpec moved = state.spec();
+  const auto found = std::ranges::find(moved.own_connectors, 7, &model::OwnConnector::tag);
+  ASSERT_NE(found, moved.own_connectors.end());
+  EXPECT_EQ(found->between, (model::CellPair{to[0], to[1]}));
+  state.remove(to[1]);
+  EXPECT_EQ(state.spec().own_connectors.size(), 1U);
 }
 
 }  // namespace

@@ -37,21 +37,28 @@ constexpr double kShareMin = 1e-6;
 /// No larger factor is sought: a normal distribution of a large cv has too many strengths of zero.
 constexpr double kFactorMax = 1e9;
 
+/// How a strength scatters: its distribution and cv.
+using Law = std::pair<StrengthDistribution, double>;
+
+Law law_of(const StrengthScatter& scatter, std::size_t connection) {
+  return {scatter.distribution_of(connection), scatter.cv_of(connection)};
+}
+
 /// What becomes of the connections of one robot whose load ratios are divided by one factor.
 class Product {
  public:
   /// All load ratios change by `more`; those that are positive then are taken.
   Product(std::span<const double> ratios, const StrengthScatter& scatter, double more) {
-    std::map<double, std::vector<double>> by_cv;
+    std::map<Law, std::vector<double>> by_law;
     for (std::size_t i = 0; i < ratios.size(); ++i) {
       if (ratios[i] + more > kLoadRatioTie) {
-        by_cv[scatter.cv_of(i)].push_back(ratios[i] + more);
+        by_law[law_of(scatter, i)].push_back(ratios[i] + more);
       }
     }
-    for (auto& [cv, some] : by_cv) {
+    for (auto& [law, some] : by_law) {
       std::ranges::sort(some, std::ranges::greater());
       largest_ = std::max(largest_, some.front());
-      groups_.push_back({ScatteredFactor(scatter.distribution, cv), std::move(some)});
+      groups_.push_back({ScatteredFactor(law.first, law.second), std::move(some)});
     }
   }
 
@@ -223,23 +230,24 @@ LoadRange whole_range(const Assessment& assessment) {
 /// The connections that fail most often, by falling share. Of those that scatter alike the ones
 /// with the largest load ratio are looked at, of the first case that is known.
 std::vector<FailingConnection> likeliest(std::span<const LoadCase> cases,
-                                         const StrengthScatter& scatter, double fails) {
+                                         const StrengthScatter& scatter, double fails,
+                                         std::size_t count_max) {
   std::vector<FailingConnection> list;
   const auto known = std::ranges::find(cases, CaseState::kKnown, &LoadCase::state);
   if (known == cases.end() || fails <= 0) {
     return list;
   }
-  std::map<double, std::vector<std::size_t>> by_cv;
+  std::map<Law, std::vector<std::size_t>> by_law;
   for (std::size_t i = 0; i < known->ratios.size(); ++i) {
     if (known->ratios[i] > kLoadRatioTie) {
-      by_cv[scatter.cv_of(i)].push_back(i);
+      by_law[law_of(scatter, i)].push_back(i);
     }
   }
-  for (auto& [cv, some] : by_cv) {
+  for (auto& [law, some] : by_law) {
     std::ranges::stable_sort(some, std::ranges::greater(),
                              [&](std::size_t i) { return known->ratios[i]; });
-    some.resize(std::min(some.size(), cases.size() > 1 ? kLookedAtMax : kLikeliestMax));
-    const ScatteredFactor own(scatter.distribution, cv);
+    some.resize(std::min(some.size(), std::max(count_max, cases.size() > 1 ? kLookedAtMax : 0)));
+    const ScatteredFactor own(law.first, law.second);
     for (const std::size_t i : some) {
       const double alone = mean_over_common(scatter, [&](double common) {
         double sum = 0;
@@ -253,7 +261,7 @@ std::vector<FailingConnection> likeliest(std::span<const LoadCase> cases,
     }
   }
   std::ranges::stable_sort(list, std::ranges::greater(), &FailingConnection::share);
-  list.resize(std::min(list.size(), kLikeliestMax));
+  list.resize(std::min(list.size(), count_max));
   while (list.size() > 1 && list.back().share < kShareMin) {
     list.pop_back();
   }
@@ -277,7 +285,8 @@ double bound(const std::vector<double>& samples, double direction) {
 
 }  // namespace
 
-Reliability find_reliability(std::span<const LoadCase> cases, const StrengthScatter& scatter) {
+Reliability find_reliability(std::span<const LoadCase> cases, const StrengthScatter& scatter,
+                             std::size_t likeliest_max) {
   const Cases all(cases, scatter);
   Reliability found{.scatter = scatter};
   found.fails = clamped(all.fails(1));
@@ -288,7 +297,7 @@ Reliability find_reliability(std::span<const LoadCase> cases, const StrengthScat
     found.holds_low = std::min(found.holds, bound(all.each_holds(0), -1));
     found.holds_high = std::max(found.holds, bound(all.each_holds(1), 1));
   }
-  found.likeliest = likeliest(cases, scatter, found.fails);
+  found.likeliest = likeliest(cases, scatter, found.fails, likeliest_max);
   found.strength_factor_99 = strength_factor(all, 0.01);
   found.strength_factor_999 = strength_factor(all, 0.001);
   return found;
@@ -317,7 +326,8 @@ std::optional<std::vector<double>> known_ratios(const Assessment& assessment) {
 
 std::optional<Reliability> find_reliability(const Assessment& assessment,
                                             const StrengthScatter& scatter,
-                                            const SampledMasses& sampled) {
+                                            const SampledMasses& sampled,
+                                            std::size_t likeliest_max) {
   auto ratios = known_ratios(assessment);
   if (!ratios) {
     return std::nullopt;
@@ -325,7 +335,7 @@ std::optional<Reliability> find_reliability(const Assessment& assessment,
   const LoadCase one{.ratios = *std::move(ratios)};
   const auto cases =
       sampled.cases.empty() ? std::span(&one, 1) : std::span<const LoadCase>(sampled.cases);
-  Reliability found = find_reliability(cases, scatter);
+  Reliability found = find_reliability(cases, scatter, likeliest_max);
   found.sample_count = sampled.cases.size();
   found.changed_count = sampled.changed_count;
   if (assessment.load_ratio_max) {

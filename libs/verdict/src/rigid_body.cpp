@@ -393,4 +393,68 @@ RigidBody GrowingRigidBody::with(const base::Cell& cell, bool is_on_floor) const
   return exact_body(cubes);
 }
 
+struct ShrinkingRigidBody::Whole {
+  const model::Robot& robot;
+  base::NodePlaces node_mm;
+  FloatingBody body;
+
+  /// The corners of the facets but these.
+  std::vector<PlanPoint> corners_without(std::span<const std::size_t> lost) const {
+    std::vector<PlanPoint> corners;
+    for (std::size_t i = 0; i < robot.facets().size(); ++i) {
+      if (std::ranges::find(lost, i) == lost.end()) {
+        add_corners_of(i, corners);
+      }
+    }
+    return corners;
+  }
+
+  void add_corners_of(std::size_t facet, std::vector<PlanPoint>& corners) const {
+    add_corners(node_mm(robot.modules()[base::at(robot.facets()[facet].module)].cell),
+                body.foot_half_width_mm, corners);
+  }
+
+  /// Whether the polygon may be another without some facets.
+  bool needs(std::span<const std::size_t> facets) const {
+    std::vector<PlanPoint> own;
+    for (const std::size_t facet : facets) {
+      add_corners_of(facet, own);
+    }
+    const auto is_near = [&](const PlanPoint& a, const PlanPoint& b) {
+      return std::hypot(a.x - b.x, a.y - b.y) <= 4 * body.tie_mm;
+    };
+    return std::ranges::any_of(body.polygon, [&](const PlanPoint& corner) {
+      return std::ranges::any_of(own,
+                                 [&](const PlanPoint& point) { return is_near(corner, point); });
+    });
+  }
+};
+
+ShrinkingRigidBody::ShrinkingRigidBody(const model::Robot& robot)
+    : whole_(std::make_unique<Whole>(
+          Whole{.robot = robot,
+                .node_mm = base::NodePlaces(robot.lattice(), robot.material().pitch_mm),
+                .body = body_of(Situation(robot))})) {}
+
+ShrinkingRigidBody::~ShrinkingRigidBody() = default;
+
+std::optional<double> ShrinkingRigidBody::margin_mm_without(
+    std::optional<std::size_t> module, std::span<const std::size_t> facets) const {
+  /// What rounding may do, in pitches: far more than it does, and than what kMarginTie leaves out.
+  constexpr double kRounding = 1e-6;
+  const model::Robot& robot = whole_->robot;
+  FloatingBody body = whole_->body;
+  if (whole_->needs(facets)) {
+    body.polygon = convex_hull(whole_->corners_without(facets), body.tie_mm);
+  }
+  if (body.polygon.empty()) {
+    return std::nullopt;
+  }
+  if (module) {
+    add_module(body, whole_->node_mm(robot.modules()[*module].cell), -robot.mass(*module), false);
+  }
+  const auto margin = floating_body(body).margin_mm;
+  return margin ? std::optional(*margin - kRounding * robot.material().pitch_mm) : std::nullopt;
+}
+
 }  // namespace holdfast::verdict

@@ -172,17 +172,26 @@ TEST(Reliability, is_that_of_samples_on_random_robots) {
     for (const ConnectionResult& one : assessment.connections) {
       ratios.push_back(one.load_ratio * scale);
     }
-    const StrengthScatter scatter = {
+    StrengthScatter scatter = {
         .distribution = kAll[seed % 3], .cv = 0.1, .common_cv = seed % 2 == 0 ? 0.08 : 0.0};
+    for (std::size_t i = 0; seed % 5 < 2 && i < ratios.size(); ++i) {
+      scatter.own_cv.push_back(i % 4 == 0 ? 0.2 : 0.1);
+      scatter.own_distribution.push_back(kAll[(seed + i) % 3]);
+    }
     const Reliability found = find_reliability(ratios, scatter);
     Sampler sampler(seed);
-    const ScatteredFactor own(scatter.distribution, scatter.cv);
+    std::vector<ScatteredFactor> own;
+    for (std::size_t i = 0; i < ratios.size(); ++i) {
+      own.emplace_back(scatter.distribution_of(i), scatter.cv_of(i));
+    }
     int holds = 0;
     for (int i = 0; i < sample_count; ++i) {
       const double common = sampler.factor(scatter.distribution, scatter.common_cv);
       bool is_whole = true;
-      for (const double ratio : ratios) {
-        is_whole = (ratio <= 0 || common * own.at_normal(sampler.normal()) > ratio) && is_whole;
+      for (std::size_t k = 0; k < ratios.size(); ++k) {
+        const bool is_pulled = ratios[k] > 0;
+        is_whole =
+            (!is_pulled || common * own[k].at_normal(sampler.normal()) > ratios[k]) && is_whole;
       }
       holds += is_whole ? 1 : 0;
     }

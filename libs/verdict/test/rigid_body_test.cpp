@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "brute_force.hpp"
+#include "general_robot.hpp"
 #include "holdfast/mechanics/safe_angles.hpp"
 #include "random_robot.hpp"
 
@@ -319,6 +320,54 @@ TEST(RigidBody, has_the_margin_of_any_facet_to_the_last_digits) {
                        .material = {.pitch_mm = 1e-12, .facet_mm = 1e12}};
   EXPECT_TRUE(assess(wide).is_stable);
   EXPECT_NEAR(*assess(wide).margin_mm, 5e11, 1e-3);
+}
+
+/// Against a robot that is made without the foot, or without the module.
+void expect_margins_without_each(const model::RobotSpec& spec, std::size_t& compared_count) {
+  const auto robot = model::Robot::create(spec);
+  if (!robot || !is_on_flat_floor(robot.value()) || robot.value().facets().size() < 2) {
+    return;
+  }
+  const ShrinkingRigidBody shrinking(robot.value());
+  const auto expect_like = [&](const model::RobotSpec& rest, std::optional<std::size_t> module,
+                               const std::vector<std::size_t>& lost) {
+    const auto other = model::Robot::create(rest);
+    const auto expected = other ? assess_rigid_body(other.value()).margin_mm : std::nullopt;
+    if (!expected) {
+      return;
+    }
+    const auto found = shrinking.margin_mm_without(module, lost);
+    ASSERT_TRUE(found);
+    EXPECT_LE(*found, *expected);
+    EXPECT_NEAR(*found, *expected, 2e-6 * robot.value().material().pitch_mm);
+    ++compared_count;
+  };
+  for (std::size_t i = 0; i < robot.value().modules().size(); ++i) {
+    const Cell cell = robot.value().modules()[i].cell;
+    std::vector<std::size_t> lost;
+    for (std::size_t k = 0; k < robot.value().facets().size(); ++k) {
+      if (base::at(robot.value().facets()[k].module) == i) {
+        lost.push_back(k);
+        model::RobotSpec rest = spec;
+        rest.lost_facets.push_back({cell, robot.value().facets()[k].direction});
+        expect_like(rest, std::nullopt, lost);
+      }
+    }
+    model::RobotSpec rest = spec;
+    std::erase(rest.existing, cell);
+    std::erase(rest.planned, cell);
+    expect_like(rest, i, lost);
+  }
+}
+
+TEST(ShrinkingRigidBody, has_the_margin_of_the_robot_without_a_foot_or_module) {
+  std::size_t compared_count = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    expect_margins_without_each(test::random_robot(seed), compared_count);
+    expect_margins_without_each(test::general_robot(test::kLattices[seed % 4], seed),
+                                compared_count);
+  }
+  EXPECT_GT(compared_count, 500U);
 }
 
 TEST(GrowingRigidBody, is_that_of_the_grown_robot_to_the_last_digit) {

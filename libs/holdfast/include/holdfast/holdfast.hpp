@@ -31,6 +31,7 @@
 #include "holdfast/io/robot_description.hpp"   // IWYU pragma: export
 #include "holdfast/large/follow.hpp"           // IWYU pragma: export
 #include "holdfast/limit/limit_load.hpp"       // IWYU pragma: export
+#include "holdfast/model/connected_parts.hpp"  // IWYU pragma: export
 #include "holdfast/model/robot.hpp"            // IWYU pragma: export
 #include "holdfast/model/robot_catalogue.hpp"  // IWYU pragma: export
 #include "holdfast/proof/proof.hpp"            // IWYU pragma: export

@@ -32,6 +32,12 @@ struct LoseOneOptions {
 /// of what is left would.
 plan::LossReport lose_one(const Structure& structure, const LoseOneOptions& options = {});
 
+/// Numbers for tables and pictures, of each connection, module and facet: `loss_outcome`, 1 if the
+/// robot is safe after its loss, 2 if that is undecided, 3 if it is fatal, and 0 if it was not
+/// tried; `loss_load_ratio`, the largest load ratio after it, or what that does not exceed.
+std::vector<io::MoreNumbers> lose_one_numbers(const model::Robot& robot,
+                                              const plan::LossReport& report);
+
 /// Lines for the end of report_text().
 std::string lose_one_text(const plan::LossReport& report);
 

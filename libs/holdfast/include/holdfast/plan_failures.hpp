@@ -9,6 +9,7 @@
 #include "holdfast/losses.hpp"
 #include "holdfast/plan/sequence.hpp"
 #include "holdfast/reliability.hpp"
+#include "holdfast/trial.hpp"
 
 /// How sure is a plan, and does it hold whatever single part is lost? The questions of
 /// reliability.hpp and losses.hpp, asked of every stage of every step.
@@ -50,6 +51,21 @@ struct PlanFailures {
 /// that cannot be done; nothing scatters.
 base::Result<PlanFailures> find_plan_failures(const io::Document& document,
                                               const PlanFailuresWish& wish);
+
+/// How many places are looked at, and for how long.
+struct NextFailuresLimits {
+  std::size_t safe_count_max = 0;  ///< Ends with so many that hold; 0: looks at all.
+  double seconds_max = std::numeric_limits<double>::infinity();
+  std::function<bool()> is_interrupted = {};
+};
+
+/// Looks at the places for the next module that are safe by themselves, the best first: with too
+/// little probability a place is `overload`, or `undecided` where that is not certain; where a
+/// single loss is fatal it has that loss's verdict. Places that are not looked at become open.
+/// Errors: nothing scatters. `wish.progress` is called with the number of places.
+std::optional<base::Error> find_next_failures(const Structure& structure,
+                                              const PlanFailuresWish& wish,
+                                              const NextFailuresLimits& limits, NextResult& result);
 
 /// Lines for the end of a plan's report, and the members "reliability" and "lose_one" that were
 /// asked for.

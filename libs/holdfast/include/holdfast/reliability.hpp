@@ -38,10 +38,9 @@ std::optional<verdict::StrengthScatter> find_scatter(const Structure& structure,
 /// stay, or no load is known. `options` are those of the check. Where masses scatter, samples in
 /// which facets change their states are checked from scratch, for which the structure's document
 /// must be whole.
-std::optional<verdict::Reliability> find_reliability(const Structure& structure,
-                                                     const CheckResult& result,
-                                                     const verdict::StrengthScatter& scatter,
-                                                     const CheckOptions& options = {});
+std::optional<verdict::Reliability> find_reliability(
+    const Structure& structure, const CheckResult& result, const verdict::StrengthScatter& scatter,
+    const CheckOptions& options = {}, std::size_t likeliest_max = verdict::kLikeliestMax);
 
 /// A robot, and what is known of it.
 struct AssessedRobot {
@@ -50,12 +49,18 @@ struct AssessedRobot {
   /// What the robot is made from; none: samples that would need a check are not known.
   const model::RobotSpec* spec = nullptr;
   double safety_factor = 1;  ///< What its strengths were divided by: those as given scatter.
+  std::size_t likeliest_max = verdict::kLikeliestMax;  ///< So many connections are named.
 };
 
 /// Says it for a robot that is no structure.
 std::optional<verdict::Reliability> find_reliability(const AssessedRobot& assessed,
                                                      const verdict::StrengthScatter& scatter,
                                                      const CheckOptions& options = {});
+
+/// Numbers for tables and pictures: `fail_share` of each connection, of a reliability that names
+/// all of them (`likeliest_max`).
+std::vector<io::MoreNumbers> reliability_numbers(
+    const model::Robot& robot, const std::optional<verdict::Reliability>& reliability);
 
 /// Lines for the end of report_text().
 std::string reliability_text(const model::Robot& robot,

@@ -49,6 +49,15 @@ std::vector<base::Cell> free_cells(const model::RobotSpec& spec);
 /// robot that topples, else `undecided`, as no load is known.
 verdict::Assessment first_look(const model::Robot& robot);
 
+/// How sure it is that a robot with one more module holds, and what a loss does to it.
+struct TrialFailures {
+  bool has_probability = false;  ///< Whether the next was asked for; none: it is not known.
+  std::optional<double> probability_holds = {};
+  bool is_improbable = false;      ///< It is less than asked for, or may be.
+  std::string fatal_loss = {};     ///< "(0,0,0)-(1,0,0)": of the first that brings it down.
+  bool is_loss_undecided = false;  ///< Some loss may.
+};
+
 /// The result of adding one more module to a robot.
 struct Trial {
   base::Cell cell;
@@ -66,6 +75,8 @@ struct Trial {
   std::optional<double> margin_mm = {};
   /// Whether it is undecided as linear theory does not suffice (verdict::ReasonCode::kSecondOrder).
   bool is_bent = false;
+  /// What find_next_failures() has found of a place that is safe by itself; empty if not asked.
+  TrialFailures failures = {};
 };
 
 /// Tries cells of one robot, as often as it is asked: what was prepared for the first eight cells

@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <array>
+#include <limits>
+#include <utility>
+
 #include "equilibrium_options.hpp"
 #include "failures/losses_words.hpp"
 #include "holdfast/base/check.hpp"
@@ -148,6 +152,34 @@ LossReport lose_one(const Structure& structure, const LoseOneOptions& options) {
   const auto spec = io::make_spec(structure.document);
   HOLDFAST_CHECK(spec.has_value());  // The structure's robot was made of it.
   return plan::lose_each(spec.value(), loss_options(options));
+}
+
+std::vector<io::MoreNumbers> lose_one_numbers(const model::Robot& robot, const LossReport& report) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  const auto filled = [&](const char* name, double value) {
+    return io::MoreNumbers{.name = name,
+                           .connections = std::vector(robot.connections().size(), value),
+                           .modules = std::vector(robot.modules().size(), value),
+                           .facets = std::vector(robot.facets().size(), value)};
+  };
+  io::MoreNumbers outcome = filled("loss_outcome", 0);
+  io::MoreNumbers ratio = filled("loss_load_ratio", kUnknown);
+  using List = std::vector<double> io::MoreNumbers::*;
+  constexpr std::array<List, plan::kLossKindCount> kLists = {
+      &io::MoreNumbers::connections, &io::MoreNumbers::modules, &io::MoreNumbers::facets};
+  std::array<std::size_t, plan::kLossKindCount> next{};
+  for (const LossAnswer& answer : report.answers) {
+    const auto kind = static_cast<std::size_t>(answer.loss.kind);
+    if (answer.loss.kind == LossKind::kFoot && !answer.loss.direction) {
+      continue;  // What fixes a module is no facet.
+    }
+    const std::size_t i = next[kind]++;
+    (outcome.*kLists[kind])[i] = answer.is_fatal() ? 3 : answer.verdict == Verdict::kSafe ? 1 : 2;
+    if (answer.verdict != Verdict::kUnstable) {
+      (ratio.*kLists[kind])[i] = answer.load_ratio_max.value_or(kUnknown);
+    }
+  }
+  return {std::move(outcome), std::move(ratio)};
 }
 
 std::string lose_one_text(const LossReport& report) {

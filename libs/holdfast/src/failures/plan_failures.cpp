@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "failures/losses_words.hpp"
+#include "failures/sure.hpp"
 #include "holdfast/io/steps_report.hpp"
 #include "step_walk.hpp"
 
@@ -17,9 +18,6 @@ using plan::Stage;
 using plan::StageId;
 using verdict::StrengthScatter;
 using verdict::Verdict;
-
-constexpr const char* kNothingScatters =
-    "nothing is known to scatter, expected an option, or strength_cv or mass_cv in the file";
 
 /// Goes through the stages of a plan.
 class PlanWalk {
@@ -92,20 +90,11 @@ class PlanWalk {
   std::optional<base::Error> add_scatter(const model::RobotSpec& piece,
                                          const std::vector<plan::Hanging>& hangings,
                                          Holding& holding) const {
-    const auto robot = model::Robot::create(piece, wish_.lose_one.check.thread_count);
-    if (!robot) {
-      return robot.error();
+    const auto found = find_sure(piece, document_, wish_);
+    if (!found) {
+      return found.error();
     }
-    const auto scatter = find_scatter(document_.extension, robot.value(), wish_.scatter);
-    if (!scatter) {
-      return base::bad_input(kNothingScatters);
-    }
-    const CheckResult checked = check(robot.value(), wish_.lose_one.check);
-    const auto sure = find_reliability({.robot = robot.value(),
-                                        .assessment = checked.assessment,
-                                        .spec = &piece,
-                                        .safety_factor = document_.safety_factor},
-                                       *scatter, wish_.lose_one.check);
+    const auto& [scatter, sure] = found.value();
     holding.is_known = holding.is_known && sure.has_value();
     if (sure) {
       holding.add(sure->holds, sure->holds_low, sure->holds_high);
@@ -115,9 +104,9 @@ class PlanWalk {
       std::ranges::transform(hangings, std::back_inserter(ratios), [&](const plan::Hanging& one) {
         return one.load_ratio / document_.safety_factor;
       });
-      const double hold = verdict::find_reliability(ratios, {.distribution = scatter->distribution,
-                                                             .cv = scatter->cv,
-                                                             .common_cv = scatter->common_cv})
+      const double hold = verdict::find_reliability(ratios, {.distribution = scatter.distribution,
+                                                             .cv = scatter.cv,
+                                                             .common_cv = scatter.common_cv})
                               .holds;
       holding.add(hold, hold, hold);
     }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "holdfast/reliability.hpp"
 
@@ -34,7 +35,9 @@ std::string scatter_text(const verdict::StrengthScatter& scatter) {
   if (scatter.common_cv > 0) {
     text += fmt::format(" each, +-{:.4g} % together", 100 * scatter.common_cv);
   }
-  if (scatter.distribution != verdict::StrengthDistribution::kLognormal) {
+  if (!scatter.own_distribution.empty()) {
+    text += ", of several distributions";
+  } else if (scatter.distribution != verdict::StrengthDistribution::kLognormal) {
     text += fmt::format(", {}", name(scatter.distribution));
   }
   if (const double masses = mass_cv(scatter); masses > 0) {
@@ -96,6 +99,18 @@ std::string reliability_text(const model::Robot& robot,
                                      found.changed_count, found.sample_count)));
 }
 
+std::vector<io::MoreNumbers> reliability_numbers(const model::Robot& robot,
+                                                 const std::optional<Reliability>& reliability) {
+  io::MoreNumbers share{.name = "fail_share"};
+  if (reliability) {
+    share.connections.assign(robot.connections().size(), 0);
+    for (const verdict::FailingConnection& one : reliability->likeliest) {
+      share.connections[one.connection] = one.share;
+    }
+  }
+  return {std::move(share)};
+}
+
 void write_reliability_member(io::JsonStream& json, const model::Robot& robot,
                               const verdict::StrengthScatter& scatter,
                               const std::optional<Reliability>& reliability) {
@@ -114,7 +129,9 @@ void write_reliability_member(io::JsonStream& json, const model::Robot& robot,
   json.member("distribution", name(scatter.distribution));
   json.key("likeliest");
   json.begin_array();
-  for (std::size_t i = 0; reliability && i < reliability->likeliest.size(); ++i) {
+  const std::size_t named_count =
+      reliability ? std::min(reliability->likeliest.size(), verdict::kLikeliestMax) : 0;
+  for (std::size_t i = 0; i < named_count; ++i) {
     const verdict::FailingConnection& one = reliability->likeliest[i];
     const auto ends = model::ends(robot, one.connection);
     json.begin_object();

@@ -32,19 +32,45 @@ std::vector<double> masses(const model::Robot& robot, const std::vector<double>&
   return list;
 }
 
-/// Sets the strengths' cv of each connection, or the one that all have.
-void take_strengths(const model::Robot& robot, const std::vector<double>& of_kind,
-                    StrengthScatter& scatter) {
-  scatter.cv = std::max(verdict::kCvMin, of_kind.front());
-  if (std::ranges::all_of(of_kind, [&](double cv) { return cv == of_kind.front(); })) {
-    return;
-  }
+/// What a connection states that the document lists by itself; null if it lists none such.
+const io::Scatter* own_scatter(const io::Extension& extension, const model::Robot& robot,
+                               const model::Connection& pair) {
+  const std::int32_t tag = robot.connector_tag(pair);
+  return tag == model::OwnConnector::kNoTag ? nullptr
+                                            : &extension.connections[base::at(tag)].scatter;
+}
+
+template <class Value>
+bool are_all(const std::vector<Value>& list, const Value& value) {
+  return std::ranges::count(list, value) == static_cast<std::ptrdiff_t>(list.size());
+}
+
+/// Sets how the strength of each connection scatters, or how all do. A connection that states
+/// nothing scatters as the one of its modules that scatters more.
+void take_strengths(const io::Extension& extension, const model::Robot& robot,
+                    const ScatterWish& wish, StrengthScatter& scatter) {
+  const std::vector<double> of_kind =
+      by_kind(extension, robot.kinds().size(), &io::Scatter::strength_cv);
+  std::vector<double> cvs;
+  std::vector<verdict::StrengthDistribution> distributions;
   for (const model::Connection& pair : robot.connections()) {
+    const io::Scatter* const own = own_scatter(extension, robot, pair);
     const double cv = std::max(of_kind[robot.modules()[base::at(pair.a)].kind],
                                of_kind[robot.modules()[base::at(pair.b)].kind]);
-    scatter.own_cv.push_back(std::max(verdict::kCvMin, cv));
+    const double stated = own == nullptr ? cv : own->strength_cv.value_or(cv);
+    cvs.push_back(std::max(verdict::kCvMin, wish.strength_cv.value_or(stated)));
+    distributions.push_back(own == nullptr || wish.distribution
+                                ? scatter.distribution
+                                : own->distribution.value_or(scatter.distribution));
   }
-  scatter.cv = scatter.own_cv.empty() ? scatter.cv : *std::ranges::max_element(scatter.own_cv);
+  scatter.cv = std::max(verdict::kCvMin, wish.strength_cv.value_or(of_kind.front()));
+  scatter.cv = cvs.empty() ? scatter.cv : *std::ranges::max_element(cvs);
+  if (!are_all(cvs, scatter.cv)) {
+    scatter.own_cv = std::move(cvs);
+  }
+  if (!are_all(distributions, scatter.distribution)) {
+    scatter.own_distribution = std::move(distributions);
+  }
 }
 
 /// Checks a robot with other masses.
@@ -90,16 +116,14 @@ std::optional<StrengthScatter> find_scatter(const Structure& structure, const Sc
 std::optional<StrengthScatter> find_scatter(const io::Extension& extension,
                                             const model::Robot& robot, const ScatterWish& wish) {
   const std::size_t kinds = robot.kinds().size();
-  std::vector<double> strengths = by_kind(extension, kinds, &io::Scatter::strength_cv);
   std::vector<double> mass_cvs = by_kind(extension, kinds, &io::Scatter::mass_cv);
-  strengths = wish.strength_cv ? std::vector(strengths.size(), *wish.strength_cv) : strengths;
   mass_cvs = wish.mass_cv ? std::vector(mass_cvs.size(), *wish.mass_cv) : mass_cvs;
   StrengthScatter scatter;
-  take_strengths(robot, strengths, scatter);
-  scatter.mass_cv = masses(robot, mass_cvs);
-  scatter.common_cv = wish.common_cv;
   scatter.distribution = wish.distribution.value_or(
       extension.scatter.distribution.value_or(verdict::StrengthDistribution::kLognormal));
+  take_strengths(extension, robot, wish, scatter);
+  scatter.mass_cv = masses(robot, mass_cvs);
+  scatter.common_cv = wish.common_cv;
   const bool is_any = scatter.cv > verdict::kCvMin || wish.strength_cv || wish.common_cv > 0 ||
                       !scatter.mass_cv.empty();
   return is_any ? std::optional(scatter) : std::nullopt;
@@ -108,7 +132,7 @@ std::optional<StrengthScatter> find_scatter(const io::Extension& extension,
 std::optional<verdict::Reliability> find_reliability(const AssessedRobot& assessed,
                                                      const StrengthScatter& scatter,
                                                      const CheckOptions& options) {
-  const auto& [robot, assessment, spec, safety_factor] = assessed;
+  const auto& [robot, assessment, spec, safety_factor, likeliest_max] = assessed;
   verdict::SampledMasses sampled;
   if (!scatter.mass_cv.empty()) {
     const CheckOptions how{.is_bonded = assessment.contact_model == verdict::ContactModel::kBonded,
@@ -125,7 +149,7 @@ std::optional<verdict::Reliability> find_reliability(const AssessedRobot& assess
     sampled = verdict::sample_masses(robot, assessment, scatter.mass_cv, sampling);
   }
   if (safety_factor == 1) {
-    return verdict::find_reliability(assessment, scatter, sampled);
+    return verdict::find_reliability(assessment, scatter, sampled, likeliest_max);
   }
   for (verdict::LoadCase& one : sampled.cases) {
     for (double& ratio : one.ratios) {
@@ -133,20 +157,22 @@ std::optional<verdict::Reliability> find_reliability(const AssessedRobot& assess
     }
   }
   return verdict::find_reliability(with_strengths_as_given(assessment, safety_factor), scatter,
-                                   sampled);
+                                   sampled, likeliest_max);
 }
 
 std::optional<verdict::Reliability> find_reliability(const Structure& structure,
                                                      const CheckResult& result,
                                                      const StrengthScatter& scatter,
-                                                     const CheckOptions& options) {
+                                                     const CheckOptions& options,
+                                                     std::size_t likeliest_max) {
   const auto spec = scatter.mass_cv.empty() ? base::Result<model::RobotSpec>(model::RobotSpec())
                                             : io::make_spec(structure.document);
   const bool is_whole = spec && !spec.value().existing.empty();
   return find_reliability({.robot = structure.robot,
                            .assessment = result.assessment,
                            .spec = is_whole ? &spec.value() : nullptr,
-                           .safety_factor = structure.document.safety_factor},
+                           .safety_factor = structure.document.safety_factor,
+                           .likeliest_max = likeliest_max},
                           scatter, options);
 }
 

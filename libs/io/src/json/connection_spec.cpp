@@ -119,8 +119,10 @@ void add_laws(const Document& document, const std::vector<model::ModuleKind>& ki
     const auto found = by_cell.find(cell);
     return found == by_cell.end() ? kinds.front() : *found->second;
   };
-  for (const auto& [between, connectors] : extension.connections) {
-    if (connectors == Connectors{} || !cells.contains(between[0]) || !cells.contains(between[1])) {
+  for (std::size_t i = 0; i < extension.connections.size(); ++i) {
+    const auto& [between, connectors, scatter] = extension.connections[i];
+    const bool is_plain = connectors == Connectors{} && scatter == Scatter{};
+    if (is_plain || !cells.contains(between[0]) || !cells.contains(between[1])) {
       continue;
     }
     const auto direction =
@@ -128,7 +130,7 @@ void add_laws(const Document& document, const std::vector<model::ModuleKind>& ki
     model::ConnectorLaw law = model::weaker(kind_at(between[0]).connectors[direction],
                                             kind_at(between[1]).connectors[direction ^ 1U]);
     apply(connectors, extension.lattice, direction, law);
-    spec.own_connectors.push_back({between, law});
+    spec.own_connectors.push_back({between, law, static_cast<std::int32_t>(i)});
   }
 }
 

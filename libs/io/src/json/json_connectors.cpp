@@ -73,7 +73,22 @@ void check_pair_lists_of(JsonReading& reading, const Connectors& connectors,
   }
 }
 
-/// Reads one of kScatterKeys.
+}  // namespace
+
+std::optional<std::string> find_cv_fault(std::string_view key, double cv) {
+  const double most = key == kScatterKeys[0] ? verdict::kCvMax : verdict::kMassCvMax;
+  if (cv >= verdict::kCvMin && cv <= most) {
+    return std::nullopt;
+  }
+  return fmt::format(
+      "{}: expected a standard deviation over mean from {} to {}, such as 0.1 for 10 %, found {}",
+      key, verdict::kCvMin, most, cv);
+}
+
+bool is_scatter_key(std::string_view key) {
+  return std::ranges::find(kScatterKeys, key) != kScatterKeys.end();
+}
+
 void read_scatter(JsonReading& reading, const std::string& key, const Json& value,
                   const JsonPlace& place, Scatter& scatter) {
   if (key == kScatterKeys[2]) {
@@ -89,22 +104,6 @@ void read_scatter(JsonReading& reading, const std::string& key, const Json& valu
     reading.fail(place, *fault);
   }
   (key == kScatterKeys[0] ? scatter.strength_cv : scatter.mass_cv) = cv;
-}
-
-}  // namespace
-
-std::optional<std::string> find_cv_fault(std::string_view key, double cv) {
-  const double most = key == kScatterKeys[0] ? verdict::kCvMax : verdict::kMassCvMax;
-  if (cv >= verdict::kCvMin && cv <= most) {
-    return std::nullopt;
-  }
-  return fmt::format(
-      "{}: expected a standard deviation over mean from {} to {}, such as 0.1 for 10 %, found {}",
-      key, verdict::kCvMin, most, cv);
-}
-
-bool is_scatter_key(std::string_view key) {
-  return std::ranges::find(kScatterKeys, key) != kScatterKeys.end();
 }
 
 void read_connector_parameter(JsonReading& reading, const std::string& key, const Json& value,

@@ -29,6 +29,10 @@ void read_connector_parameter(JsonReading& reading, const std::string& key, cons
 /// Whether a key of the material is one of kScatterKeys.
 bool is_scatter_key(std::string_view key);
 
+/// Reads one of kScatterKeys.
+void read_scatter(JsonReading& reading, const std::string& key, const Json& value,
+                  const JsonPlace& place, Scatter& scatter);
+
 /// Says why strengths or masses cannot scatter so much or so little, if they cannot; `key` is one
 /// of kKindScatterKeys.
 std::optional<std::string> find_cv_fault(std::string_view key, double cv);

@@ -148,6 +148,8 @@ ConnectionEntry connection(JsonReading& reading, const Json& value, const JsonPl
       entry.between = pair(reading, member, here);
     } else if (std::ranges::find(kConnectorKeys, key) != kConnectorKeys.end()) {
       read_connector_parameter(reading, key, member, here, entry.connectors);
+    } else if (std::ranges::find(kConnectionScatterKeys, key) != kConnectionScatterKeys.end()) {
+      read_scatter(reading, key, member, here, entry.scatter);
     } else {
       reading.note_unknown_key(here, kConnectionKeys);
     }

@@ -175,6 +175,7 @@ void add_connection_members(Items& members, const Extension& extension) {
   add_list(members, "connections", extension.connections, [](const ConnectionEntry& entry) {
     Items items = {member(kBetweenKey, json_text(std::span(entry.between)))};
     add_connector_members(items, entry.connectors);
+    add_scatter_members(items, entry.scatter);
     return object(items);
   });
 }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <iterator>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -16,7 +17,7 @@ namespace holdfast::io {
 namespace {
 
 constexpr std::string_view kNames =
-    "ax,ay,az,bx,by,bz,direction,load_ratio,axial_n,bending_nmm,shear_n,torsion_nmm,breaks\n";
+    "ax,ay,az,bx,by,bz,direction,load_ratio,axial_n,bending_nmm,shear_n,torsion_nmm,breaks";
 
 /// Rows that one thread makes at a time, some 60 KB.
 constexpr std::size_t kBlockRows = 512;
@@ -37,7 +38,7 @@ std::string step_name(const base::Lattice& lattice, base::Direction direction) {
 }
 
 void append_row(std::string& out, const model::Robot& robot, std::size_t connection,
-                const verdict::ConnectionResult& result) {
+                const verdict::ConnectionResult& result, const std::vector<MoreNumbers>& more) {
   const auto [a, b] = model::ends(robot, connection);
   for (const base::Cell& cell : {a, b}) {
     fmt::format_to(std::back_inserter(out), FMT_COMPILE("{},{},{},"), cell.x, cell.y, cell.z);
@@ -48,7 +49,14 @@ void append_row(std::string& out, const model::Robot& robot, std::size_t connect
                               result.torsion_nmm}) {
     append_csv(out, number);
   }
-  out += verdict::breaks(result.load_ratio) ? "1\n" : "0\n";
+  out += verdict::breaks(result.load_ratio) ? '1' : '0';
+  for (const MoreNumbers& column : more) {
+    const bool is_known = !column.connections.empty();
+    fmt::format_to(
+        std::back_inserter(out), FMT_COMPILE(",{}"),
+        is_known ? column.connections[connection] + 0.0 : std::numeric_limits<double>::quiet_NaN());
+  }
+  out += '\n';
 }
 
 }  // namespace
@@ -57,10 +65,14 @@ void write_connections_csv(std::ostream& out, const model::Robot& robot,
                            const verdict::Assessment& assessment, const ReportOptions& options) {
   const ConnectionList list(assessment, options.connections);
   out << kNames;
+  for (const MoreNumbers& column : options.more) {
+    out << ',' << column.name;
+  }
+  out << '\n';
   write_items(out, list.size(), kBlockRows, options.thread_count, options.progress,
               [&](std::size_t begin, std::size_t end, std::string& text) {
                 for (std::size_t i = begin; i < end; ++i) {
-                  append_row(text, robot, list[i], assessment.connections[list[i]]);
+                  append_row(text, robot, list[i], assessment.connections[list[i]], options.more);
                 }
               });
 }

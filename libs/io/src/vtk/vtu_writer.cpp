@@ -133,6 +133,7 @@ class Writer {
       : out_(out),
         robot_(robot),
         assessment_(assessment),
+        more_(options.more),
         module_count_(robot.modules().size()),
         shown_count_(shown_count),
         connection_count_(robot.connections().size()),
@@ -171,6 +172,7 @@ class Writer {
     announce_facts();
     announce_loads();
     announce_ground();
+    announce_more();
     out_ << "</CellData>\n</Piece>\n</UnstructuredGrid>\n";
     arrays_.write();
     out_ << "</VTKFile>\n";
@@ -191,6 +193,7 @@ class Writer {
     announce_facts();
     announce_loads();
     announce_ground();
+    announce_more();
     out_ << "</PCellData>\n";
     for (const std::string& piece : pieces) {
       out_ << fmt::format("<Piece Source=\"{}\"/>\n", piece);
@@ -536,9 +539,20 @@ class Writer {
                         [this, rotation](std::size_t i) { return rotation(module_of(i)); });
   }
 
+  void announce_more() {
+    const auto of = [](const std::vector<double>& list) {
+      return [&list](std::size_t i) { return list.empty() ? 0.0 : list[i]; };
+    };
+    for (const MoreNumbers& field : more_) {
+      announce_cell_array(field.name.c_str(), of(field.modules), of(field.connections),
+                          of(field.facets));
+    }
+  }
+
   std::ostream& out_;
   const model::Robot& robot_;
   const verdict::Assessment& assessment_;
+  const std::vector<MoreNumbers>& more_;
   std::size_t module_count_;
   std::size_t shown_count_;
   std::size_t connection_count_;

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "holdfast/model/connected_parts.hpp"
 #include "holdfast/plan/judgement.hpp"
 
 namespace holdfast::plan {
@@ -60,10 +61,9 @@ class Breaking {
     for (std::size_t i = 0; i < all.size(); ++i) {
       all[i] = static_cast<std::int32_t>(i);
     }
-    if (loss != nullptr) {
-      lose(*loss, all);
-    }
-    std::vector<Piece> pieces = held_parts_of(all);
+    const auto keeps_all = [](std::size_t, const model::Connection&) { return true; };
+    std::vector<Piece> pieces =
+        loss != nullptr ? parts_after(*loss, all) : held_parts_of(all, whole_, keeps_all);
     take_round();  // Of what falls at once.
     while (!pieces.empty() && cascade_.reasons.empty()) {
       tell(pieces);
@@ -91,17 +91,27 @@ class Breaking {
     }
   }
 
-  void lose(const Loss& loss, Piece& all) {
+  /// The parts that are held without a connection or a module; what is not, falls.
+  std::vector<Piece> parts_after(const Loss& loss, const Piece& all) {
     const auto index = [&](const base::Cell& cell) {
       const auto found = std::ranges::find(whole_.modules(), cell, &model::Module::cell);
       return static_cast<std::int32_t>(found - whole_.modules().begin());
     };
+    const std::int32_t a = index(loss.cells[0]);
     if (loss.kind == LossKind::kModule) {
-      std::erase(all, index(loss.cells[0]));
-      return;
+      std::vector<Piece> held =
+          held_parts_of(all, whole_, [a](std::size_t, const model::Connection& pair) {
+            return pair.a != a && pair.b != a;
+          });
+      std::erase(held, Piece{a});
+      std::erase(fallen_, a);
+      return held;
     }
     spec_.released.push_back({loss.cells[0], loss.cells[1]});
-    broken_.insert(std::minmax(index(loss.cells[0]), index(loss.cells[1])));
+    const auto lost = std::minmax({a, index(loss.cells[1])});
+    return held_parts_of(all, whole_, [lost](std::size_t, const model::Connection& pair) {
+      return std::minmax({pair.a, pair.b}) != lost;
+    });
   }
 
   /// The robot of a piece, its modules in the piece's order.
@@ -151,25 +161,34 @@ class Breaking {
 
   void break_apart(const Piece& piece, const model::Robot& robot,
                    const verdict::Assessment& assessment, std::vector<Piece>& next) {
-    for (const std::size_t index : breaking(assessment)) {
+    const std::vector<std::size_t> broken = breaking(assessment);
+    for (const std::size_t index : broken) {
       const auto [a, b] = model::ends(robot, index);
       round_.broken.push_back(
           {.between = {a, b}, .load_ratio = assessment.connections[index].load_ratio});
       spec_.released.push_back({a, b});
-      const model::Connection pair = robot.connections()[index];
-      broken_.insert(std::minmax(piece[at(pair.a)], piece[at(pair.b)]));
     }
-    for (Piece& part : held_parts_of(piece)) {
+    const std::set<std::size_t> gone(broken.begin(), broken.end());
+    const auto is_whole = [&](std::size_t index, const model::Connection&) {
+      return !gone.contains(index);
+    };
+    for (Piece& part : held_parts_of(piece, robot, is_whole)) {
       next.push_back(std::move(part));
     }
   }
 
-  /// The connected parts of a piece that something supports; the others fall.
-  std::vector<Piece> held_parts_of(const Piece& piece) {
+  /// The parts of a piece, whose robot is given, that are joined by those connections of which
+  /// is_whole(index, connection) is true; those that nothing supports fall.
+  template <class IsWhole>
+  std::vector<Piece> held_parts_of(const Piece& piece, const model::Robot& robot,
+                                   const IsWhole& is_whole) {
+    model::ConnectedParts parts =
+        model::connected_parts(robot.connections(), piece.size(), is_whole);
     std::vector<Piece> held;
-    std::set<std::int32_t> left(piece.begin(), piece.end());
-    while (!left.empty()) {
-      Piece part = part_from(*left.begin(), left);
+    for (Piece& part : parts.lists()) {
+      for (std::int32_t& module : part) {
+        module = piece[at(module)];
+      }
       const bool is_held = std::ranges::any_of(part, [&](std::int32_t module) {
         return whole_.modules()[at(module)].support != model::Support::kNone;
       });
@@ -180,22 +199,6 @@ class Breaking {
       }
     }
     return held;
-  }
-
-  /// The modules that are connected to one of those that are left, which it takes out of these.
-  Piece part_from(std::int32_t first, std::set<std::int32_t>& left) const {
-    Piece part = {first};
-    left.erase(first);
-    for (std::size_t i = 0; i < part.size(); ++i) {
-      const std::int32_t from = part[i];
-      for (const std::int32_t to : whole_.connected()[at(from)]) {
-        if (to >= 0 && !broken_.contains(std::minmax(from, to)) && left.erase(to) > 0) {
-          part.push_back(to);
-        }
-      }
-    }
-    std::ranges::sort(part);
-    return part;
   }
 
   std::vector<base::Cell> cells_of(std::vector<std::int32_t> modules) const {
@@ -229,7 +232,6 @@ class Breaking {
   model::RobotSpec spec_;  ///< With what has broken released.
   const model::Robot& whole_;
   const CascadeOptions& options_;
-  std::set<std::pair<std::int32_t, std::int32_t>> broken_;
   std::vector<std::int32_t> standing_;  ///< Modules of pieces that hold, or of which it is unknown.
   std::vector<std::int32_t> fallen_;    ///< In this round.
   CascadeRound round_;

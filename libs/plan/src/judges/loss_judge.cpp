@@ -33,9 +33,6 @@ constexpr double kEnergyRounding = 1e-9;
 /// Rounding in how far bending moves the centre of mass, as a share.
 constexpr double kLossSwayRounding = 1e-6;
 
-/// What rounding may take of a margin, in pitches.
-constexpr double kMarginRounding = 1e-6;
-
 /// The modules that the forces of what is lost act on.
 std::vector<std::size_t> places_of(const LostPart& part, const model::Robot& robot) {
   std::vector<std::size_t> places;
@@ -77,7 +74,6 @@ LossJudge::LossJudge(const model::RobotSpec& spec, const model::Robot& robot,
   options_.method = solver::Method::kDirect;
   options_.fill_max = kLossFillMax;
   for (std::size_t i = 0; i < robot.modules().size(); ++i) {
-    mass_kg_ += robot.mass(i);
     const Vec& load = robot.loads()[i];
     scale_n_ += std::hypot(load[0], load[1], load[2]);
   }
@@ -96,8 +92,11 @@ bool LossJudge::prepare(std::span<const LostPart> parts) {
   if (!is_stuck()) {
     return false;
   }
+  if (has_polygon() && robot_.carried().empty()) {
+    shrinking_.emplace(robot_);
+  }
   find_inverse(parts);
-  if (solved_.stability_rule == verdict::StabilityRule::kPolygon) {
+  if (has_polygon()) {
     sway_.emplace(robot_, *influence_);
   }
   look_at_facets();
@@ -173,26 +172,16 @@ bool LossJudge::knows(const LostPart& part) const {
   if (part.is_apart || part.has_fixed || part.fallen_count > 0) {
     return false;
   }
-  const bool has_polygon = solved_.stability_rule == verdict::StabilityRule::kPolygon;
-  return options_.is_bonded || !has_polygon ||
-         (part.change.lost_facets.empty() && margin_mm(part).value_or(-1) > 0);
+  return options_.is_bonded || !has_polygon() || margin_mm(part).value_or(-1) > 0;
 }
 
-/// What is left of the margin without a module, at least: the polygon stays what it is.
+/// What is left of the margin, at least.
 std::optional<double> LossJudge::margin_mm(const LostPart& part) const {
-  if (!part.module || !solved_.simplified.margin_mm) {
+  if (!part.module && part.change.lost_facets.empty()) {
     return solved_.simplified.margin_mm;
   }
-  if (!robot_.carried().empty()) {
-    return std::nullopt;
-  }
-  const Vec place = node_place(robot_, *part.module);
-  const verdict::PlanPoint& centre = solved_.simplified.centre_of_mass;
-  const double own = robot_.mass(*part.module);
-  const double shift =
-      std::hypot(place[0] - centre.x, place[1] - centre.y) * own / (mass_kg_ - own);
-  const double left = *solved_.simplified.margin_mm - shift;
-  return left - kMarginRounding * robot_.material().pitch_mm;
+  return shrinking_ ? shrinking_->margin_mm_without(part.module, part.change.lost_facets)
+                    : std::nullopt;
 }
 
 Vec6<double> LossJudge::displacement(std::size_t module, const Changed& changed) const {

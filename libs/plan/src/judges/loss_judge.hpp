@@ -13,6 +13,7 @@
 #include "equilibria/sway.hpp"
 #include "holdfast/solver/influence.hpp"
 #include "holdfast/verdict/assessment.hpp"
+#include "holdfast/verdict/rigid_body.hpp"
 #include "judges/lost_part.hpp"
 
 namespace holdfast::plan {
@@ -58,6 +59,9 @@ class LossJudge {
   void find_inverse(std::span<const LostPart> parts);
   void look_at_facets();
   bool is_stuck() const;
+
+  bool has_polygon() const { return solved_.stability_rule == verdict::StabilityRule::kPolygon; }
+
   std::optional<double> margin_mm(const LostPart& part) const;
   bool stays_over_polygon(const LostPart& part, const Changed& changed) const;
   double energy(const LostPart& part, const Changed& changed) const;
@@ -75,11 +79,11 @@ class LossJudge {
   std::unique_ptr<solver::Influence> influence_;
   std::optional<SolvedCore> core_;
   std::optional<GrownContact> contact_;
-  std::optional<Sway> sway_;  ///< Where the polygon decides.
+  std::optional<verdict::ShrinkingRigidBody> shrinking_;  ///< Where the polygon decides.
+  std::optional<Sway> sway_;                              ///< And there.
   double ratio_per_norm_ = 0;
   double solved_ratio_ = 0;  ///< The largest load ratio as it is, at most.
   double scale_n_ = 0;       ///< All loads together.
-  double mass_kg_ = 0;
   /// The root of the energy that leaves every facet stuck, the least of all and the next; below
   /// zero where no bound decides.
   double room_ = 0;

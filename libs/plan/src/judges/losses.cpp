@@ -7,7 +7,6 @@
 #include <chrono>
 #include <functional>
 #include <limits>
-#include <map>
 #include <memory>
 #include <span>
 #include <utility>
@@ -15,7 +14,7 @@
 #include "bounds/loop_bound.hpp"
 #include "holdfast/base/check.hpp"
 #include "holdfast/host/team.hpp"
-#include "holdfast/model/cell_index.hpp"
+#include "holdfast/model/connected_parts.hpp"
 #include "judges/core_assessment.hpp"
 #include "judges/loss_judge.hpp"
 #include "judges/lost_part.hpp"
@@ -32,6 +31,9 @@ using verdict::Verdict;
 
 /// A core serves robots of no more modules: larger ones take long to be assessed anyway.
 constexpr std::size_t kLossCoreCountMax = 2000;
+
+/// Modules by index, ascending.
+using Piece = std::vector<std::int32_t>;
 
 /// The number of losses that are judged between two looks at the clock.
 constexpr std::size_t kLossStride = 256;
@@ -62,58 +64,12 @@ model::RobotSpec spec_after(model::RobotSpec spec, const Loss& loss) {
   return spec;
 }
 
-/// What a spec says of these cells alone.
-model::RobotSpec part_with(const model::RobotSpec& spec, const std::map<Cell, std::size_t>& piece,
-                           std::size_t index) {
-  const auto is_other = [&](const Cell& cell) { return piece.at(cell) != index; };
-  model::RobotSpec part = spec;
-  std::erase_if(part.existing, is_other);
-  return part;
-}
-
 void forget_carried(model::RobotSpec& spec) {
   std::vector<Cell> there = spec.existing;
   std::ranges::sort(there);
   std::erase_if(spec.carried, [&](const model::CarriedMass& mass) {
     return !std::ranges::binary_search(there, mass.carrier);
   });
-}
-
-/// The piece of each cell, by neighbours that are not released.
-std::map<Cell, std::size_t> pieces_of(const model::RobotSpec& spec, std::size_t& count) {
-  std::map<Cell, std::size_t> piece;
-  constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-  for (const Cell& cell : spec.existing) {
-    piece[cell] = kNone;
-  }
-  std::vector<model::CellPair> released;
-  for (const model::CellPair& pair : spec.released) {
-    released.push_back(pair);
-    released.push_back({pair[1], pair[0]});
-  }
-  std::ranges::sort(released);
-  count = 0;
-  for (const auto& [first, known] : piece) {
-    if (known != kNone) {
-      continue;
-    }
-    std::vector<Cell> queue = {first};
-    piece[first] = count;
-    for (std::size_t i = 0; i < queue.size(); ++i) {
-      const Cell here = queue[i];
-      for (const base::Direction direction : base::directions(spec.lattice)) {
-        const Cell next = base::neighbour(spec.lattice, here, direction);
-        const auto found = piece.find(next);
-        if (found != piece.end() && found->second == kNone &&
-            !std::ranges::binary_search(released, model::CellPair{here, next})) {
-          found->second = count;
-          queue.push_back(next);
-        }
-      }
-    }
-    ++count;
-  }
-  return piece;
 }
 
 /// Judges all losses of one robot.
@@ -149,6 +105,7 @@ class LossSearch {
       bound_by_loops(solved);
     }
     if (!options_.is_by_checks && left_count() > 0 && !patience_.is_over()) {
+      tell();
       judge_ = LossJudge::make(spec_, robot_, solved, parts_, options_.equilibrium);
     }
     if (judge_) {
@@ -271,14 +228,18 @@ class LossSearch {
   LossAnswer check(const LostPart& part) {
     LossAnswer answer{.loss = part.loss, .verdict = Verdict::kSafe};
     const model::RobotSpec changed = spec_after(spec_, part.loss);
-    std::size_t count = 0;
-    const auto piece = pieces_of(changed, count);
-    for (std::size_t i = 0; i < count; ++i) {
-      model::RobotSpec spec = part_with(changed, piece, i);
+    const std::vector<Piece> pieces = pieces_without(part);
+    for (const Piece& piece : pieces) {
+      model::RobotSpec spec = changed;
+      spec.existing.clear();
+      for (const std::int32_t module : piece) {
+        spec.existing.push_back(robot_.modules()[at(module)].cell);
+      }
       forget_absent(spec);
       forget_carried(spec);
       const auto robot = model::Robot::create(spec, options_.equilibrium.thread_count);
-      const Judgement judgement = robot ? judge_piece(robot.value(), count == 1) : Judgement{};
+      const Judgement judgement =
+          robot ? judge_piece(robot.value(), pieces.size() == 1) : Judgement{};
       if (severity(judgement.verdict) > severity(answer.verdict)) {
         answer.verdict = judgement.verdict;
       }
@@ -288,6 +249,18 @@ class LossSearch {
       }
     }
     return answer;
+  }
+
+  /// What is left of the robot, fallen pieces included.
+  std::vector<Piece> pieces_without(const LostPart& part) const {
+    model::ConnectedParts parts = model::connected_parts(
+        robot_.connections(), robot_.modules().size(),
+        [&](std::size_t, const model::Connection& pair) { return !part.lacks(pair); });
+    std::vector<Piece> pieces = parts.lists();
+    std::erase_if(pieces, [&](const Piece& piece) {
+      return part.module && piece.front() == static_cast<std::int32_t>(*part.module);
+    });
+    return pieces;
   }
 
   Judgement judge_piece(const model::Robot& robot, bool is_whole) {
@@ -359,6 +332,7 @@ class LossSearch {
   void conclude(LossReport& report) const {
     const double largest = largest_ratio();
     for (const auto& answer : answers_) {
+      report.answers.push_back(*answer);
       if (answer->is_fatal()) {
         report.fatal.push_back(*answer);
       } else if (answer->verdict != Verdict::kSafe) {

@@ -117,13 +117,13 @@ RobotState::RobotState(const model::RobotSpec& spec)
     release(pair);
   }
   for (const model::OwnConnector& own : spec.own_connectors) {
-    own_connectors_[ordered(own.between)] = own.law;
+    own_connectors_[ordered(own.between)] = own;
   }
 }
 
 const model::ConnectorLaw* RobotState::own_connector(const Cell& a, const Cell& b) const {
   const auto found = own_connectors_.find(ordered({a, b}));
-  return found == own_connectors_.end() ? nullptr : &found->second;
+  return found == own_connectors_.end() ? nullptr : &found->second.law;
 }
 
 std::array<double, 3> RobotState::gravity() const {
@@ -183,10 +183,10 @@ void RobotState::move(std::span<const Cell> from, std::span<const Cell> to) {
     }
   }
   released_ = std::move(released);
-  std::map<model::CellPair, model::ConnectorLaw> own_connectors;
-  for (const auto& [pair, law] : own_connectors_) {
+  std::map<model::CellPair, model::OwnConnector> own_connectors;
+  for (const auto& [pair, own] : own_connectors_) {
     if (const auto moved = moved_pair(pair)) {
-      own_connectors[*moved] = law;
+      own_connectors[*moved] = own;
     }
   }
   own_connectors_ = std::move(own_connectors);
@@ -234,9 +234,9 @@ model::RobotSpec RobotState::spec(std::span<const std::int32_t> modules,
     return cells.contains(pair[0]) && cells.contains(pair[1]);
   };
   std::ranges::copy_if(released, std::back_inserter(spec.released), are_there);
-  for (const auto& [pair, law] : own_connectors_) {
+  for (const auto& [pair, own] : own_connectors_) {
     if (are_there(pair) && !released.contains(pair)) {
-      spec.own_connectors.push_back({pair, law});
+      spec.own_connectors.push_back({pair, own.law, own.tag});
     }
   }
   return spec;

@@ -9,6 +9,7 @@
 #include <set>
 #include <string>
 
+#include "holdfast/model/connected_parts.hpp"
 #include "steps/way.hpp"
 
 namespace holdfast::plan {
@@ -23,33 +24,28 @@ using Pieces = std::vector<std::vector<std::int32_t>>;
 Pieces pieces_of(const RobotState& robot, const std::set<Cell>& gone,
                  const std::set<model::CellPair>& more) {
   const auto modules = robot.modules();
-  std::vector<bool> is_seen(modules.size());
-  Pieces pieces;
-  for (std::size_t first = 0; first < modules.size(); ++first) {
-    if (is_seen[first] || !modules[first].is_there || gone.contains(modules[first].cell)) {
-      continue;
-    }
-    std::vector<std::int32_t> piece = {static_cast<std::int32_t>(first)};
-    is_seen[first] = true;
-    for (std::size_t next = 0; next < piece.size(); ++next) {
-      const Cell& cell = robot.module(piece[next]).cell;
-      for (const base::Direction direction : base::directions(robot.lattice())) {
-        const Cell other = base::neighbour(robot.lattice(), cell, direction);
-        const std::int32_t found = robot.find(other);
-        if (found == RobotState::kNone || is_seen[static_cast<std::size_t>(found)] ||
-            gone.contains(other)) {
-          continue;
-        }
-        const model::CellPair pair = ordered({cell, other});
-        if (!robot.released().contains(pair) && !more.contains(pair)) {
-          is_seen[static_cast<std::size_t>(found)] = true;
-          piece.push_back(found);
-        }
+  const auto is_in = [&](std::int32_t module) {
+    const auto& one = modules[static_cast<std::size_t>(module)];
+    return one.is_there && !gone.contains(one.cell);
+  };
+  model::ConnectedParts parts(modules.size());
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(modules.size()); ++i) {
+    const Cell& cell = robot.module(i).cell;
+    for (const base::Direction direction : base::directions(robot.lattice())) {
+      const std::int32_t other = is_in(i)
+                                     ? robot.find(base::neighbour(robot.lattice(), cell, direction))
+                                     : RobotState::kNone;
+      if (other == RobotState::kNone || other < i || !is_in(other)) {
+        continue;
+      }
+      const model::CellPair pair = ordered({cell, robot.module(other).cell});
+      if (!robot.released().contains(pair) && !more.contains(pair)) {
+        parts.join(i, other);
       }
     }
-    std::ranges::sort(piece);
-    pieces.push_back(std::move(piece));
   }
+  Pieces pieces = parts.lists();
+  std::erase_if(pieces, [&](const auto& piece) { return !is_in(piece.front()); });
   return pieces;
 }
 

@@ -51,7 +51,7 @@ struct Connectors {
 struct Scatter {
   std::optional<double> strength_cv;
   std::optional<double> mass_cv;
-  /// The law of all strengths of a file; kinds have none of their own.
+  /// The law of all strengths of a file, or of one connection's; kinds have none of their own.
   std::optional<verdict::StrengthDistribution> distribution;
 
   friend bool operator==(const Scatter&, const Scatter&) = default;
@@ -71,6 +71,7 @@ struct KindEntry {
 struct ConnectionEntry {
   model::CellPair between;
   Connectors connectors;  ///< What differs from the weaker of its two modules' connectors.
+  Scatter scatter = {};   ///< How its strength scatters, without masses.
 
   friend bool operator==(const ConnectionEntry&, const ConnectionEntry&) = default;
 };

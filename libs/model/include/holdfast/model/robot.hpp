@@ -86,6 +86,10 @@ struct OwnKind {
 struct OwnConnector {
   CellPair between;  ///< Modules in neighbouring cells, existing or planned, in either order.
   ConnectorLaw law;
+  /// What the caller calls it by; along steps it stays with the connection.
+  std::int32_t tag = kNoTag;
+
+  static constexpr std::int32_t kNoTag = -1;
 
   friend bool operator==(const OwnConnector&, const OwnConnector&) = default;
 };
@@ -262,6 +266,9 @@ class Robot {
                        static_cast<std::size_t>(base::index(direction))];
   }
 
+  /// The tag of a connection that has a law of its own; else OwnConnector::kNoTag.
+  std::int32_t connector_tag(const Connection& connection) const;
+
   /// The laws of all connections that there can be.
   std::span<const ConnectorLaw> connectors() const { return connectors_; }
 
@@ -345,6 +352,7 @@ class Robot {
   /// The places in the table of neighbours of connections that have a law of their own, ascending,
   /// with the index of the law.
   std::vector<std::pair<std::size_t, std::size_t>> own_connectors_;
+  std::vector<std::int32_t> own_tags_;  ///< Of these laws, in their order.
   bool has_default_connectors_ = true;
   bool has_floor_ = false;
   std::int32_t support_z_ = 0;

@@ -64,6 +64,7 @@ struct LossOptions {
 struct LossReport {
   Judgement whole;             ///< Of the robot as it is; if it is not safe, no loss is tried.
   std::size_t loss_count = 0;  ///< There are so many.
+  std::vector<LossAnswer> answers = {};    ///< Each, in the order of its parts; none if not tried.
   std::vector<LossAnswer> fatal = {};      ///< Those that bring it down, in the order of its parts.
   std::vector<LossAnswer> undecided = {};  ///< Neither safe nor known to be fatal.
   /// The loss with the largest load ratio of those after which all is held; bounds count only where

@@ -129,7 +129,7 @@ class RobotState {
   std::vector<std::int32_t> free_;  ///< Indices of modules that are not there.
   std::unordered_map<base::Cell, std::int32_t, CellHash> index_;
   std::set<model::CellPair> released_;
-  std::map<model::CellPair, model::ConnectorLaw> own_connectors_;
+  std::map<model::CellPair, model::OwnConnector> own_connectors_;
 };
 
 /// What differs between two robots besides their modules, as holdfast JSON names it.

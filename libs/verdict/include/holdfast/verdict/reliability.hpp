@@ -31,7 +31,7 @@ struct Reliability {
   /// be off by, and three standard deviations of what samples of masses say.
   double holds_low = 1;
   double holds_high = 1;
-  std::vector<FailingConnection> likeliest = {};  ///< At most kLikeliestMax, by falling share.
+  std::vector<FailingConnection> likeliest = {};  ///< So many as were asked for, by falling share.
   /// The factor of all strengths that are given with which the robot holds with probability 0.99,
   /// and 0.999; none if no connection is pulled, or no factor does.
   std::optional<double> strength_factor_99 = {};
@@ -50,10 +50,12 @@ std::optional<std::vector<double>> known_ratios(const Assessment& assessment);
 /// of sampled masses. None where known_ratios() are none: what strengths do is void then.
 std::optional<Reliability> find_reliability(const Assessment& assessment,
                                             const StrengthScatter& scatter,
-                                            const SampledMasses& sampled = {});
+                                            const SampledMasses& sampled = {},
+                                            std::size_t likeliest_max = kLikeliestMax);
 
 /// Says it for cases that are all as likely as each other, one or pairs of opposite samples.
-Reliability find_reliability(std::span<const LoadCase> cases, const StrengthScatter& scatter);
+Reliability find_reliability(std::span<const LoadCase> cases, const StrengthScatter& scatter,
+                             std::size_t likeliest_max = kLikeliestMax);
 
 /// Says it for load ratios that are exact.
 Reliability find_reliability(std::span<const double> load_ratios, const StrengthScatter& scatter);

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "holdfast/model/robot.hpp"
@@ -69,6 +71,25 @@ class GrowingRigidBody {
   // One of the two.
   std::unique_ptr<const Exact> exact_;
   std::unique_ptr<const Floating> floating_;
+};
+
+/// Finds the margin of a robot on a flat floor without one of its modules, or without some of its
+/// facets, again and again. Keeps a reference. Several threads may call.
+class ShrinkingRigidBody {
+ public:
+  /// The support polygon decides about the robot, which carries nothing besides its modules.
+  explicit ShrinkingRigidBody(const model::Robot& robot);
+  ~ShrinkingRigidBody();
+
+  /// The margin in mm, as of RigidBody, less what rounding may do to it. None if no facet is left.
+  /// `facets` are all those that are lost, by index, the lost module's among them.
+  std::optional<double> margin_mm_without(std::optional<std::size_t> module,
+                                          std::span<const std::size_t> facets) const;
+
+ private:
+  struct Whole;
+
+  std::unique_ptr<const Whole> whole_;
 };
 
 }  // namespace holdfast::verdict

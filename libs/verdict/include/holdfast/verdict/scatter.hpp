@@ -37,9 +37,15 @@ struct StrengthScatter {
   double common_cv = 0;  ///< That of G, whose distribution is the same; 0: there is no G.
   /// The cv of each s_i, by connection, where they are not all `cv`, which is then the largest.
   std::vector<double> own_cv = {};
+  /// The distribution of each s_i, by connection; empty: all are `distribution`, as that of G is.
+  std::vector<StrengthDistribution> own_distribution = {};
   /// The cv of each module's mass, by module, from 0 to kMassCvMax; normal, and independent of each
   /// other. Empty: masses do not scatter.
   std::vector<double> mass_cv = {};
+
+  StrengthDistribution distribution_of(std::size_t connection) const {
+    return own_distribution.empty() ? distribution : own_distribution[connection];
+  }
 
   double cv_of(std::size_t connection) const { return own_cv.empty() ? cv : own_cv[connection]; }
 };
