@@ -9,6 +9,8 @@
 #include <set>
 #include <utility>
 
+#include "holdfast/model/connected_parts.hpp"
+
 namespace holdfast {
 namespace {
 
@@ -97,23 +99,24 @@ class PieceMaker {
   /// Makes bodies of what falls in a round, which begin to move at a time.
   void add(const plan::CascadeRound& round, double begin_s, fall::Scene& scene) {
     for (const plan::BrokenConnection& broken : round.broken) {
-      broken_.insert(std::minmax(index_.find(broken.between[0]), index_.find(broken.between[1])));
+      broken_.insert(std::minmax({index_.find(broken.between[0]), index_.find(broken.between[1])}));
     }
-    std::set<std::int32_t> left;
+    std::set<std::int32_t> falling;
     for (const Cell& cell : round.fallen) {
-      left.insert(index_.find(cell));
+      falling.insert(index_.find(cell));
     }
-    while (!left.empty()) {
-      fall::Body& body = scene.bodies.emplace_back();
-      body.begin_s = begin_s;
-      std::vector<std::int32_t> found = {left.extract(left.begin()).value()};
-      for (std::size_t i = 0; i < found.size(); ++i) {
-        add_module(found[i], static_cast<std::int32_t>(scene.bodies.size()) - 1, body);
-        for (const std::int32_t next : robot_.connected()[at(found[i])]) {
-          if (next != model::Robot::kNoNeighbour &&
-              !broken_.contains(std::minmax(found[i], next)) && left.erase(next) != 0) {
-            found.push_back(next);
-          }
+    const auto is_whole = [&](std::size_t, const model::Connection& pair) {
+      return falling.contains(pair.a) && falling.contains(pair.b) &&
+             !broken_.contains(std::minmax({pair.a, pair.b}));
+    };
+    model::ConnectedParts parts =
+        model::connected_parts(robot_.connections(), robot_.modules().size(), is_whole);
+    for (const std::vector<std::int32_t>& part : parts.lists()) {
+      if (falling.contains(part.front())) {
+        fall::Body& body = scene.bodies.emplace_back();
+        body.begin_s = begin_s;
+        for (const std::int32_t module : part) {
+          add_module(module, static_cast<std::int32_t>(scene.bodies.size()) - 1, body);
         }
       }
     }

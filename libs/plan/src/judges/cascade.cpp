@@ -99,10 +99,9 @@ class Breaking {
     };
     const std::int32_t a = index(loss.cells[0]);
     if (loss.kind == LossKind::kModule) {
-      std::vector<Piece> held =
-          held_parts_of(all, whole_, [a](std::size_t, const model::Connection& pair) {
-            return pair.a != a && pair.b != a;
-          });
+      std::vector<Piece> held = held_parts_of(
+          all, whole_,
+          [a](std::size_t, const model::Connection& pair) { return pair.a != a && pair.b != a; });
       std::erase(held, Piece{a});
       std::erase(fallen_, a);
       return held;
