@@ -59,7 +59,8 @@ def reports_page(folder):
     parts = [HEAD]
     for path in sorted(folder.glob('*.schema.json')):
         schema, file = json.loads(path.read_text()), path.name.removesuffix('.schema.json')
-        parts += [f'## {schema["title"]}\n', table(schema, file)]
+        # As code, or two dashes would become a long one.
+        parts += [f'## `{schema["title"]}`\n', table(schema, file)]
         for name, part in schema.get('$defs', {}).items():
             parts += [f'### {file}: {name}\n', table(part, file)]
     return '\n'.join(parts)

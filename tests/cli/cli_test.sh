@@ -612,6 +612,10 @@ expect_exit 64 check "$safe" --svg a.svg --view frond
 expect_line err 'expected iso, front, side, top, or azimuth and elevation'
 expect_exit 64 check "$safe" --svg a.svg --size 5
 expect_line err "of 16 to 20000 pixels; found '5'$"
+expect_exit 64 generate cuble 3
+expect_line err "no family 'cuble'; did you mean 'cube'.$"
+expect_exit 64 check "$safe" --lattice catoms3d
+expect_line err "the lattice 'catoms3d' is unknown; did you mean 'catoms3D'.$"
 expect_exit 64 generate cube 3 -o a.png
 expect_line err 'whose files end in .json, .xml or .holdfast$'
 printf '{"format": "holdfast-structure", "version": 1, "moduls": [[0,0,0]]}' >slip.json

@@ -7,11 +7,14 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <iterator>
 #include <thread>
+#include <vector>
 
 #include "holdfast/base/check.hpp"
 #include "holdfast/file_ending.hpp"
 #include "holdfast/host/team.hpp"
+#include "holdfast/io/near_miss.hpp"
 #include "holdfast/limit/robot.hpp"
 #include "holdfast/model/families.hpp"
 #include "holdfast/verdict/deformed.hpp"
@@ -118,13 +121,13 @@ base::Result<Structure> load_file(const std::filesystem::path& path, int thread_
 base::Result<io::Document> generate(std::string_view family, std::size_t size) {
   const auto found = std::ranges::find(model::families(), family, &model::FamilyInfo::name);
   if (found == model::families().end()) {
-    std::string names;
-    for (const model::FamilyInfo& info : model::families()) {
-      names += (names.empty() ? "" : ", ") + std::string(info.name);
-    }
-    return base::Error{
-        .code = base::ErrorCode::kBadInput,
-        .message = fmt::format("no family '{}', there are {}", io::one_line(family), names)};
+    std::vector<std::string_view> names;
+    std::ranges::transform(model::families(), std::back_inserter(names), &model::FamilyInfo::name);
+    const auto meant = io::near_miss(family, names);
+    return base::bad_input(
+        fmt::format("no family '{}'{}", io::one_line(family),
+                    meant ? "; " + io::did_you_mean(*meant)
+                          : fmt::format(", there are {}", fmt::join(names, ", "))));
   }
   const std::size_t count = model::family_count(found->family, size);
   if (size < found->size_min || count > model::kModuleCountMax) {

@@ -4,8 +4,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <string>
+#include <vector>
 
+#include "holdfast/io/near_miss.hpp"
 #include "text_input.hpp"
 #include "vocabulary.hpp"
 
@@ -40,9 +44,13 @@ base::Result<base::Lattice> find_lattice(std::string_view name) {
   if (name == kUnknownSimulatedModules) {
     return base::Error{base::ErrorCode::kUnsupported, kNoDatoms, ""};
   }
-  return base::Error{
-      base::ErrorCode::kBadInput,
-      fmt::format("the lattice {} is unknown, expected {}", excerpt(name), all_names()), ""};
+  std::vector<std::string_view> names;
+  std::ranges::transform(kNamedLattices, std::back_inserter(names), &NamedLattice::name);
+  std::ranges::transform(kSimulatedModules, std::back_inserter(names), &SimulatedModules::name);
+  const auto meant = near_miss(name, names);
+  return base::bad_input(
+      fmt::format("the lattice {} is unknown{}", excerpt(name),
+                  meant ? "; " + did_you_mean(*meant) : ", expected " + all_names()));
 }
 
 }  // namespace holdfast::io

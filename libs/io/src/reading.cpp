@@ -145,9 +145,11 @@ void Reading::take_robot(const std::string& named, const ReadOptions& options, c
     std::vector<std::string_view> names;
     std::ranges::transform(model::robot_catalogue(), std::back_inserter(names),
                            &model::CatalogueRobot::name);
+    const auto meant = near_miss(name, names);
     fail({base::ErrorCode::kBadInput,
-          fmt::format("unknown robot {}; the catalogue has {}", excerpt(name),
-                      fmt::join(names, ", ")),
+          fmt::format("unknown robot {}; {}", excerpt(name),
+                      meant ? did_you_mean(*meant)
+                            : fmt::format("the catalogue has {}", fmt::join(names, ", "))),
           named.empty() ? "" : where()});
     return;
   }

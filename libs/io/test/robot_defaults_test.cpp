@@ -156,7 +156,8 @@ TEST(RobotDefaults, say_what_is_wrong) {
     EXPECT_EQ(result.error().where, "/robot");
     EXPECT_NE(result.error().message.find(message), std::string::npos) << result.error().message;
   };
-  refused(R"("robot": "blinky")", {}, "the catalogue has blinky-blocks, rofi, smores-ep");
+  refused(R"("robot": "lego")", {}, "the catalogue has blinky-blocks, rofi, smores-ep");
+  refused(R"("robot": "rofy")", {}, "unknown robot 'rofy'; did you mean 'rofi'?");
   refused(R"("robot": 7)", {}, "a string");
   refused(R"("robot": "")", {}, "the name of a robot");
   refused(R"("robot": "rofi")", {.robot = "smores-ep"}, "but 'smores-ep' is asked for");
