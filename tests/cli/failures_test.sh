@@ -133,7 +133,7 @@ expect_line out '^  cascade     breaks in 1 round; 5 of 6 modules fall$'
 # And after each loss: without its third connection the arm loses three modules, and holds.
 expect_exit 1 check arm.json --set strength_vertical_n=1e4 --set strength_lateral_n=1e4 \
   --lose-one --lose connections --cascade --json losses.json
-expect_line out 'without \(2,0,0\)-\(3,0,0\): 3 modules fall; then 3 modules fall in 1 round$'
+expect_line out 'without \(2,0,0\)-\(3,0,0\): 3 modules fall; in all 3 modules fall in 1 round$'
 expect_line losses.json '"outcome": ?"stands"'
 
 # A column that buckles, and what is behind: on both sides it holds, at once or not at all.

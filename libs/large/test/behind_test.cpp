@@ -256,8 +256,22 @@ TEST(behind, snaps_through_and_hangs) {
   expect_rest(made(spec), *branch.rest);
 }
 
+/// How far modules are moved where branches rest, the least first.
+std::vector<double> ways_to_rest(const Path& path) {
+  std::vector<double> ways;
+  for (const Branch& branch : path.behind) {
+    if (branch.rest) {
+      ways.push_back(branch.rest->displacement_max_mm);
+    }
+  }
+  std::ranges::sort(ways);
+  return ways;
+}
+
+// Turned and mirrored ones rest in the same shapes.
 TEST(behind, finds_equilibria_that_rest_on_random_robots) {
   int count = 0;
+  int turned_count = 0;
   for (const base::Lattice& lattice : test::kLattices) {
     for (std::uint64_t seed = 0; seed < test::campaign(std::uint64_t{40}); ++seed) {
       SCOPED_TRACE(seed);
@@ -274,6 +288,20 @@ TEST(behind, finds_equilibria_that_rest_on_random_robots) {
           robot.value(),
           {.factor_max = 3, .is_bonded = true, .is_followed_behind = true, .thread_count = 1});
       EXPECT_EQ(path.behind.empty(), !path.critical.has_value());
+      const auto symmetries = test::symmetries(lattice);
+      const test::Symmetry& symmetry = symmetries[(7 * seed + 5) % symmetries.size()];
+      if (path.critical && test::keeps_frames(lattice, symmetry)) {
+        const Path other = follow(
+            made(test::turned(spec, symmetry)),
+            {.factor_max = 3, .is_bonded = true, .is_followed_behind = true, .thread_count = 1});
+        const auto ways = ways_to_rest(path);
+        const auto other_ways = ways_to_rest(other);
+        ASSERT_EQ(other_ways.size(), ways.size());
+        for (std::size_t i = 0; i < ways.size(); ++i) {
+          ++turned_count;
+          EXPECT_NEAR(other_ways[i], ways[i], 1e-5 * ways[i]);
+        }
+      }
       for (const Branch& branch : path.behind) {
         if (branch.rest) {
           ++count;
@@ -283,6 +311,7 @@ TEST(behind, finds_equilibria_that_rest_on_random_robots) {
     }
   }
   EXPECT_GE(count, test::least(6));
+  EXPECT_GE(turned_count, test::least(2));
 }
 
 }  // namespace

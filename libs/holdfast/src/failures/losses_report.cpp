@@ -49,7 +49,7 @@ std::string aftermath(const LossAnswer& answer) {
   return after.outcome == plan::CascadeOutcome::kUndecided
              ? fmt::format("; then undecided after {}: {} by then", rounds, fall)
              : fmt::format(
-                   "; then {} in {}{}", fall, rounds,
+                   "; in all {} in {}{}", fall, rounds,
                    after.outcome == plan::CascadeOutcome::kFalls ? ", nothing is left" : "");
 }
 
