@@ -21,7 +21,7 @@ def _robot(source: Union[Robot, Path]) -> Robot:
 
 def next_places(robot: Union[Robot, Path], *, threads: int = 0, memory: float = 4,
                 bonded: bool = False, exact: bool = False, seconds: float = math.inf,
-                progress: Progress = None) -> Places:
+                safety_factor: Optional[float] = None, progress: Progress = None) -> Places:
     """Where may the next module go? See `Robot.next`.
 
     Most places of robots of more than 3,000 modules are certified by a bound of the load ratio;
@@ -34,18 +34,20 @@ def next_places(robot: Union[Robot, Path], *, threads: int = 0, memory: float = 
     <holdfast.Places: 8 of 8 safe>
     """
     return _robot(robot).next(threads=threads, memory=memory, bonded=bonded, exact=exact,
-                              seconds=seconds, progress=progress)
+                              seconds=seconds, safety_factor=safety_factor, progress=progress)
 
 
 def steps(robot: Union[Robot, Path], plan: Optional[Sequence[Mapping[str, Any]]] = None, *,
           threads: int = 0, memory: float = 4, ends_when_unsafe: bool = False,
-          exact: bool = False, progress: Progress = None) -> Steps:
+          exact: bool = False, safety_factor: Optional[float] = None,
+          progress: Progress = None) -> Steps:
     """Is every stage of every step safe?
 
     `plan` is a list of steps as in holdfast JSON, ``[{'attach': [...]}, {'move': [{'from': ...,
     'to': ...}]}]``; without it the robot's own steps are judged. `progress` is called with (steps
     judged, of how many). `exact` solves every stage, also of robots of more than 256 modules: of
     these most stages of steps that only attach, or only detach, are certified by a bound.
+    `safety_factor`: as of `Robot.check`.
 
     >>> tower = Robot([[0, 0, 0], [1, 0, 0]])
     >>> steps(tower, [{'attach': [[0, 0, 1]]}, {'attach': [[0, 0, 2], [0, 0, 3]]}])
@@ -54,6 +56,8 @@ def steps(robot: Union[Robot, Path], plan: Optional[Sequence[Mapping[str, Any]]]
     start = _robot(robot)
     if plan is not None:
         start = start.with_steps(plan)
+    if safety_factor is not None:
+        start = start.with_safety_factor(safety_factor)
     with told(progress, 'steps', is_counted=True) as tell:
         judged: Steps = Steps._of(
             _core.steps(start._held, threads, memory, ends_when_unsafe, exact, tell))
@@ -65,7 +69,8 @@ def order(target: Union[Robot, Path], *, start: Optional[Cells] = None, reach: s
           source: Optional[Cell] = None, avoid: Optional[Cells] = None, group: int = 1,
           reverse: bool = False,
           exact: bool = False, seed: int = 0, seconds: float = 300, help_seconds: float = 0,
-          threads: int = 0, progress: Progress = None) -> Order:
+          threads: int = 0, safety_factor: Optional[float] = None,
+          progress: Progress = None) -> Order:
     """In which order can a robot be built so that it is safe all the way?
 
     Parameters
@@ -91,6 +96,8 @@ def order(target: Union[Robot, Path], *, start: Optional[Cells] = None, reach: s
     seconds, help_seconds
         Give up after this time; where there is no order, seek the least help for so long. None is
         sought by itself, as the command does for 10 s: whoever asks for many orders need not wait.
+    safety_factor
+        As of `Robot.check`.
     progress
         Called with (states, modules now, modules at the furthest state).
 
@@ -98,26 +105,29 @@ def order(target: Union[Robot, Path], *, start: Optional[Cells] = None, reach: s
     <holdfast.Order found: 2 steps>
     """
     with told(progress, 'order') as tell:
-        found: Order = Order._of(_core.order(_robot(target)._held, start, reach, source, avoid,
-                                             group, reverse, exact, seed, seconds, help_seconds,
-                                             threads, tell))
+        found: Order = Order._of(_core.order(_robot(target)._asked(safety_factor), start,
+                                             reach, source, avoid, group, reverse, exact, seed,
+                                             seconds, help_seconds, threads, tell))
     return found
 
 
 def move(start: Union[Robot, Path], target: Union[Robot, Path], *, pivots: bool = False,
          within: Optional[Cells] = None, ignores_mechanics: bool = False, seed: int = 0,
-         seconds: float = 300, threads: int = 0, progress: Progress = None) -> Moves:
+         seconds: float = 300, threads: int = 0, safety_factor: Optional[float] = None,
+         progress: Progress = None) -> Moves:
     """How does a robot get from one shape to another, module by module?
 
     `pivots`: modules are cubes that turn about edges. `within`: two cells, the corners of a box
-    that modules stay in. `progress` is called with (moves judged, moves to the target at least).
+    that modules stay in. `safety_factor`: as of `Robot.check`. `progress` is called with (moves
+    judged, moves to the target at least).
 
     >>> row = Robot([[0, 0, 0], [1, 0, 0], [2, 0, 0]])
     >>> move(row, Robot([[0, 0, 0], [1, 0, 0], [1, 0, 1]]))
     <holdfast.Moves found: 1 step>
     """
     with told(progress, 'move') as tell:
-        found: Moves = Moves._of(_core.move(_robot(start)._held, _robot(target)._held, pivots,
+        found: Moves = Moves._of(_core.move(_robot(start)._asked(safety_factor),
+                                            _robot(target)._asked(safety_factor), pivots,
                                             within, ignores_mechanics, seed, seconds, threads,
                                             tell))
     return found

@@ -156,6 +156,7 @@ class Robot:
     def check(self, *, threads: int = 0, memory: float = 4, bonded: bool = False,
               limit: bool = False, limit_seconds: float = 600, proof: bool = False,
               deformed: bool = False, up_to: float = 2, follow: bool = False,
+              safety_factor: Optional[float] = None,
               progress: Progress = None) -> Report:
         """Says whether the robot holds with its planned modules attached (Eqs. 1-17).
 
@@ -175,16 +176,20 @@ class Robot:
             Judges the equilibrium in the deformed shape, followed up to a factor of all loads.
         follow
             Goes on behind the first loss of stability: ``behind`` of `Report.deformed`.
+        safety_factor
+            Strengths are divided by this, from 1 to 1000: see `with_safety_factor`.
         progress
             Called with (iteration, error) while a large robot is solved; True: a bar of tqdm's.
         """
         with told(progress, 'check') as tell:
-            return Report._of(_core.check(self._held, threads, memory, bonded, limit,
-                                          limit_seconds, proof, deformed, up_to, follow, tell))
+            return Report._of(_core.check(self._asked(safety_factor), threads, memory, bonded,
+                                          limit, limit_seconds, proof, deformed, up_to, follow,
+                                          tell))
 
     def lose_one(self, *, parts: Sequence[str] = ('connection', 'module', 'foot'),
                  seconds: float = math.inf, threads: int = 0, memory: float = 4,
                  bonded: bool = False, cascade: bool = False, deformed: bool = False,
+                 safety_factor: Optional[float] = None,
                  progress: Progress = None) -> LoseOne:
         """What follows if any single connection, module or foot is lost?
 
@@ -197,8 +202,8 @@ class Robot:
         True
         """
         with told(progress, 'lose_one', is_counted=True) as tell:
-            return lose_one_of(_core.lose_one(self._held, list(parts), seconds, threads, memory,
-                                              bonded, cascade, deformed, tell))
+            return lose_one_of(_core.lose_one(self._asked(safety_factor), list(parts), seconds,
+                                              threads, memory, bonded, cascade, deformed, tell))
 
     def cascade(self, *, threads: int = 0, memory: float = 4, bonded: bool = False,
                 deformed: bool = False, progress: Progress = None) -> Cascade:
@@ -217,7 +222,7 @@ class Robot:
 
     def next(self, *, threads: int = 0, memory: float = 4, bonded: bool = False,
              exact: bool = False, seconds: float = math.inf,
-             progress: Progress = None) -> Places:
+             safety_factor: Optional[float] = None, progress: Progress = None) -> Places:
         """Where may the next module go? Judges every free cell beside the robot.
 
         Most places of robots of more than 3,000 modules are certified by a bound of the load ratio;
@@ -228,7 +233,8 @@ class Robot:
         """
         with told(progress, 'next', is_counted=True) as tell:
             places: Places = Places._of(
-                _core.next(self._held, threads, memory, bonded, exact, seconds, tell))
+                _core.next(self._asked(safety_factor), threads, memory, bonded, exact, seconds,
+                           tell))
         return places
 
     def simulate(self, *, link: str = 'v1', method: str = 'auto', seed: int = 1,
@@ -301,7 +307,7 @@ class Robot:
                                   'its own, which steps cannot say; expected a robot without it')
         there = {cell_of(module) for module in document['modules']} | attached
         document['loads'] = [load for load in document.get('loads', []) if cell_of(load) in there]
-        return self.from_text(json_of(document), name=self.name)
+        return self._as_safe(self.from_text(json_of(document), name=self.name))
 
     @property
     def step_count(self) -> int:
@@ -315,6 +321,31 @@ class Robot:
         <holdfast.Robot of 1 module and 1 planned, cubic>
         """
         return self._of(self._held.with_planned(planned))
+
+    @property
+    def safety_factor(self) -> float:
+        """What all strengths are divided by; 1 unless `with_safety_factor` says otherwise."""
+        return self._held.safety_factor
+
+    def with_safety_factor(self, factor: float) -> Robot:
+        """The same robot with all strengths divided by a factor: safe is what would be safe under
+        all loads times it. It is no part of a file: `json` does not have it.
+
+        >>> tower = Robot([[0, 0, 0], [0, 0, 1]]).with_safety_factor(2)
+        >>> tower.safety_factor, tower.attached().safety_factor
+        (2.0, 2.0)
+        """
+        return self._of(self._held.with_safety_factor(factor))
+
+    def _asked(self, safety_factor: Optional[float]) -> _core.Structure:
+        """What is judged if somebody asks for a safety factor, or for none."""
+        return (self._held if safety_factor is None
+                else self._held.with_safety_factor(safety_factor))
+
+    def _as_safe(self, other: Robot) -> Robot:
+        """Another robot, with the safety factor of this one."""
+        return (other if other.safety_factor == self.safety_factor
+                else other.with_safety_factor(self.safety_factor))
 
     def attached(self) -> Robot:
         """The same robot with its planned modules attached.
@@ -504,11 +535,13 @@ class Robot:
         return hash((self.name, len(self)))
 
     def __reduce__(self) -> Any:
-        return (Robot.from_text, (self.json(),), (self.name,))
+        return (Robot.from_text, (self.json(),), (self.name, self.safety_factor))
 
-    def __setstate__(self, state: tuple[str]) -> None:
+    def __setstate__(self, state: tuple[str, float]) -> None:
         if state[0] != self.name:
             self._held = _core.Structure.load_text(self.json(), state[0], reading())
+        if state[1] != 1:
+            self._held = self._held.with_safety_factor(state[1])
 
     def __copy__(self) -> Robot:
         return self

@@ -190,6 +190,17 @@ SharedStructure attached(const Structure& structure) {
   return share(without_gil([&] { return make_structure(std::move(document), structure.name); }));
 }
 
+/// The robot with strengths that are divided by a factor, in place of one that it has.
+SharedStructure with_safety_factor(const Structure& structure, double factor) {
+  if (!(factor >= 1 && factor <= 1000)) {
+    throw Error("safety_factor: expected a number from 1 to 1000, found " +
+                std::string(py::str(py::float_(factor))));
+  }
+  io::Document document = structure.document;
+  document.safety_factor = factor;
+  return share(without_gil([&] { return make_structure(std::move(document), structure.name); }));
+}
+
 py::array modules(const SharedStructure& structure) {
   using model::Module;
   const auto list = structure->robot.modules();
@@ -362,7 +373,10 @@ void add_readers(py::class_<Structure, std::shared_ptr<Structure>>& type) {
                     return share(std::move(made));
                   })
       .def("with_planned", &with_planned)
-      .def("attached", &attached);
+      .def("attached", &attached)
+      .def("with_safety_factor", &with_safety_factor)
+      .def_property_readonly("safety_factor",
+                             [](const Structure& s) { return s.document.safety_factor; });
 }
 
 }  // namespace

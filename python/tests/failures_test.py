@@ -1,7 +1,9 @@
 # SPDX-FileCopyrightText: The holdfast authors
 # SPDX-License-Identifier: Apache-2.0
 """How sure a report is, and what follows from losses: against closed forms and robots without."""
+import copy
 import math
+import pickle
 
 import pytest
 
@@ -79,3 +81,32 @@ def test_pull_tests_are_fitted_by_their_logarithms():
     assert found.strength_vertical_n.value is None
     with pytest.raises(holdfast.Error, match='expected at least one experiment'):
         holdfast.fit({'experiments': []})
+
+
+def test_a_safety_factor_divides_strengths_and_is_not_lost():
+    beam = Robot([[0, 0, 2], [1, 0, 2], [2, 0, 2]], fixed=[[0, 0, 2]], planned=[[3, 0, 2]])
+    ratio = beam.check().load_ratio_max
+    assert beam.check(safety_factor=1.25).load_ratio_max == pytest.approx(1.25 * ratio, rel=1e-12)
+    assert beam.check(safety_factor=1.01 / ratio).verdict is Verdict.OVERLOAD
+    allowed = beam.with_safety_factor(1.25)
+    assert allowed.safety_factor == 1.25 and beam.safety_factor == 1 and allowed != beam
+    again = [pickle.loads(pickle.dumps(allowed)), copy.deepcopy(allowed), allowed.attached(),
+             allowed.with_steps([]), allowed.translated([1, 0, 0]), allowed.rotated(),
+             allowed.check().robot, pickle.loads(pickle.dumps(allowed.check())).robot]
+    for robot in again:
+        assert robot.safety_factor == 1.25
+    assert again[0].check().load_ratio_max == pytest.approx(1.25 * ratio, rel=1e-12)
+    assert allowed.check(safety_factor=1).load_ratio_max == pytest.approx(ratio, rel=1e-12)
+    places = beam.next(safety_factor=1.01 / ratio)
+    assert len(beam.next().safe) > 0 and len(places.safe) == 0
+    one = beam.lose_one(parts=['connection'], safety_factor=1.01 / ratio)
+    assert not one.holds_all
+    plan = [{'attach': [[3, 0, 2]]}]
+    bare = Robot([[0, 0, 2], [1, 0, 2], [2, 0, 2]], fixed=[[0, 0, 2]])
+    assert holdfast.steps(bare, plan).verdict is Verdict.SAFE
+    assert holdfast.steps(bare, plan, safety_factor=1.01 / ratio).verdict is Verdict.OVERLOAD
+    assert holdfast.order(beam).is_found
+    assert not holdfast.order(beam, safety_factor=1.01 / ratio).is_found
+    for bad in (0.5, 0, -1, 1001, math.nan):
+        with pytest.raises(holdfast.Error, match='safety_factor: expected a number from 1 to'):
+            beam.check(safety_factor=bad)

@@ -165,6 +165,8 @@ experiments() {
 expect_exit 0 fit "$repository/examples/experiments/paper_and_hanging.json"
 expect_line out '^  vertical    1[0-9.]+ N, 95 %: '
 expect_line out '^  build next  crane '
+expect_exit 0 fit "$repository/examples/experiments/paper_six_tests.json" --svg fit.svg
+cmp fit.svg "$repository/docs/fit_paper.svg" || fault 'docs/fit_paper.svg is another'
 experiments '{"pull": "vertical", "held_n": 5}, {"pull": "vertical", "held_n": 7}'
 expect_exit 0 fit experiments.json
 expect_line out '^  vertical    no value, 95 %: [0-9.]+ N or more$'

@@ -271,7 +271,11 @@ _holdfast() {
     fit)
       case $previous in
         --json) files=1 ;;
-        *) if [[ $current == -* ]]; then words="-h --help --json -q --quiet"; else files=1; fi ;;
+        --svg) files=1 ;;
+        --size) : ;;
+        --title) : ;;
+        --view) words="iso front side top" ;;
+        *) if [[ $current == -* ]]; then words="-h --help --json --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
       esac
       ;;
     generate)

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "figure.hpp"
 #include "file_clash.hpp"
 #include "holdfast/fit.hpp"
 #include "reading.hpp"
@@ -16,11 +17,13 @@ struct FitArguments {
   const CLI::App* command = nullptr;
   std::string file;
   std::string json;
+  Figure figure;
   bool is_quiet = false;
 };
 
 int run(const FitArguments& options) {
-  const Outputs outputs = {{"--json", options.json, FileFormat::kJson}};
+  const Outputs outputs = {{"--json", options.json, FileFormat::kJson},
+                           {"--svg", options.figure.path, FileFormat::kFigure}};
   if (complain_of_outputs({&options.file, 1}, outputs)) {
     return kExitUsage;
   }
@@ -34,6 +37,12 @@ int run(const FitArguments& options) {
   }
   const io::ReportOrigin origin{.file = options.file, .options = given_options(*options.command)};
   if (!options.json.empty() && !write_or_complain(options.json, fit_json(report.value(), origin))) {
+    return kExitBadInput;
+  }
+  const std::string title = "log-likelihood of strengths, with intervals at 95 %";
+  if (!write_figure_or_complain(options.figure, [&](const io::FigureOptions& figure) {
+        return fit_svg(report.value(), title, figure);
+      })) {
     return kExitBadInput;
   }
   for (std::size_t i = 0; i < report.value().names.size(); ++i) {
@@ -54,11 +63,13 @@ Command add_fit(CLI::App& app) {
   add_required(*command, "EXPERIMENTS", options->file,
                "Experiments in JSON: structures, pull tests, hanging chains; - is standard input");
   add_output(*command, "--json", options->json, "Write the report as JSON; - is standard output");
+  add_figure(*command, options->figure, "Draw how likely other strengths are");
   add_quiet(*command, options->is_quiet);
   return {
       command,
       [options] { return run(*options); },
       {.examples = {{"fit experiments.json", "strengths with intervals, and what to build next"},
+                    {"fit experiments.json --svg likelihood.svg", "how likely others would be"},
                     {"fit experiments.json --json -", "a report to read on"}},
        .notes = "Strengths are those of greatest likelihood, intervals those of the profile of "
                 "the likelihood at 95 %. Structures are files beside EXPERIMENTS.",

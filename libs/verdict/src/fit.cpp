@@ -16,9 +16,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Half of the 95 % quantile of chi squared with one degree of freedom.
-constexpr double kDrop = 1.920729;
-
 /// Fitted cvs lie between these; below the first strengths are as good as equal.
 constexpr double kFitCvMin = 0.003;
 constexpr double kFitCvMax = 1;
@@ -276,7 +273,7 @@ class Profile {
       if (sign * (outside - limit) >= 0) {
         return std::nullopt;
       }
-      if (drop_at(outside, from) > kDrop) {
+      if (drop_at(outside, from) > kIntervalDrop) {
         break;
       }
       inside = outside;
@@ -284,9 +281,25 @@ class Profile {
     }
     for (int i = 0; i < kHalvings; ++i) {
       const double middle = 0.5 * (inside + outside);
-      (drop_at(middle, from) > kDrop ? outside : inside) = middle;
+      (drop_at(middle, from) > kIntervalDrop ? outside : inside) = middle;
     }
     return 0.5 * (inside + outside);
+  }
+
+  /// How much less likely ascending values are than the best, by value; all are logarithms.
+  std::vector<double> drops(std::span<const double> values) const {
+    std::vector<double> found(values.size());
+    const auto above = static_cast<std::size_t>(
+        std::lower_bound(values.begin(), values.end(), best_.point[index_]) - values.begin());
+    Point from = best_.point;
+    for (std::size_t i = above; i < values.size(); ++i) {
+      found[i] = drop_at(values[i], from);
+    }
+    from = best_.point;
+    for (std::size_t i = above; i-- > 0;) {
+      found[i] = drop_at(values[i], from);
+    }
+    return found;
   }
 
  private:
@@ -498,6 +511,28 @@ FitResult fit_strengths(std::span<const Experiment> experiments, std::size_t cla
   }
   take_probabilities(experiments, likelihood.strengths_at(best.point), result);
   return result;
+}
+
+std::vector<ProfilePoint> strength_profile(std::span<const Experiment> experiments,
+                                           std::size_t class_count, const FitOptions& options,
+                                           std::size_t strength_class,
+                                           std::span<const double> values) {
+  const Likelihood likelihood(experiments, class_count, options);
+  if (likelihood.is_empty() || !likelihood.has(strength_class)) {
+    return {};
+  }
+  const std::vector<bool> fixed = fixed_numbers(likelihood, class_count);
+  const Best best = climb(likelihood, likelihood.starts(), fixed);
+  std::vector<double> logs;
+  for (const double value : values) {
+    logs.push_back(std::log(value));
+  }
+  const std::vector<double> drops = Profile(likelihood, best, fixed, strength_class).drops(logs);
+  std::vector<ProfilePoint> points;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    points.push_back({.value = values[i], .log_likelihood = -drops[i]});
+  }
+  return points;
 }
 
 std::optional<double> information_gain(std::span<const Experiment> experiments,

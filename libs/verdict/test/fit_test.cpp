@@ -166,6 +166,35 @@ std::vector<Experiment> made_up(const Truth& truth, std::uint64_t seed) {
   return experiments;
 }
 
+/// Strengths that were measured one by one, with a known lognormal scatter s: the profile is a
+/// parabola in the logarithm, n (log v - mean)^2 / (2 s^2) below its top.
+TEST(Fit, has_the_profile_that_a_closed_form_has) {
+  const std::vector<double> forces = {9, 10, 10.5, 12};
+  std::vector<Experiment> pulls;
+  double mean = 0;
+  for (const double force : forces) {
+    pulls.push_back({.outcome = kPulled, .connections = {{.strength_class = 1, .load_n = force}}});
+    mean += std::log(force) / static_cast<double>(forces.size());
+  }
+  const FitOptions options{.cv = 0.1};
+  const double spread = std::sqrt(std::log1p(0.01));
+  const double top = mean + spread * spread / 2;  // The strength is the mean, not the median.
+  const std::vector<double> values = {8, 9.5, 10, 10.4, 11, 13};
+  const auto profile = strength_profile(pulls, 2, options, 1, values);
+  ASSERT_EQ(profile.size(), values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double way = (std::log(values[i]) - top) / spread;
+    EXPECT_EQ(profile[i].value, values[i]);
+    EXPECT_NEAR(profile[i].log_likelihood, -2 * way * way, 1e-5 * (1 + way * way));
+  }
+  EXPECT_TRUE(strength_profile(pulls, 2, options, 0, values).empty());
+  const FitResult found = fit_strengths(pulls, 2, options);
+  const std::vector<double> ends = {*found.strengths_n[1].low, *found.strengths_n[1].high};
+  for (const ProfilePoint& end : strength_profile(pulls, 2, options, 1, ends)) {
+    EXPECT_NEAR(end.log_likelihood, -kIntervalDrop, 1e-4);
+  }
+}
+
 TEST(Fit, has_the_truth_in_its_intervals_as_often_as_it_says) {
   const Truth truth;
   const int count = test::campaign(10);  // 300 take some minutes.

@@ -9,6 +9,7 @@
 
 #include "holdfast/holdfast.hpp"
 #include "holdfast/io/experiments.hpp"  // IWYU pragma: export
+#include "holdfast/io/figure.hpp"       // IWYU pragma: export
 #include "holdfast/verdict/fit.hpp"     // IWYU pragma: export
 
 /// How strong are my magnets? What a lab has measured, as strengths and their scatter.
@@ -26,7 +27,8 @@ struct NextExperiment {
 
 struct FitReport {
   io::Experiments experiments;
-  std::vector<std::string> names;  ///< By experiment.
+  std::vector<std::string> names;           ///< By experiment.
+  std::vector<verdict::Experiment> fitted;  ///< The same as loads and outcomes.
   /// The strengths of vertical, then of lateral connections, as base::ConnectorClass counts.
   verdict::FitResult result;
   std::vector<NextExperiment> next;  ///< By falling gain.
@@ -44,6 +46,10 @@ base::Result<FitReport> fit_file(const std::filesystem::path& path);
 base::Result<FitReport> fit_text(std::string_view text, const std::filesystem::path& folder);
 
 std::string fit_text_report(const FitReport& report);
+
+/// Draws how likely other strengths are: a panel for each class, the profile of the likelihood.
+std::string fit_svg(const FitReport& report, std::string_view title,
+                    const io::FigureOptions& figure = {});
 std::string fit_json(const FitReport& report, const io::ReportOrigin& origin = {});
 
 }  // namespace holdfast

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "holdfast/io/likelihood_figure.hpp"
 #include "holdfast/verdict/reliability.hpp"
 
 namespace holdfast {
@@ -192,8 +193,12 @@ std::vector<std::pair<std::string, base::Result<Structure>>> candidates(
   return list;
 }
 
-void add_next(const std::vector<Experiment>& fitted, const verdict::FitOptions& options,
-              const std::filesystem::path& folder, FitReport& report) {
+verdict::FitOptions options_of(const io::Experiments& experiments) {
+  return {.distribution = experiments.distribution, .cv = experiments.strength_cv};
+}
+
+void add_next(const verdict::FitOptions& options, const std::filesystem::path& folder,
+              FitReport& report) {
   for (const auto& [name, structure] : candidates(report.experiments, folder)) {
     const auto connections = structure
                                  ? tested(structure.value())
@@ -203,7 +208,7 @@ void add_next(const std::vector<Experiment>& fitted, const verdict::FitOptions& 
       continue;
     }
     const auto gain =
-        verdict::information_gain(fitted, report.result, options, connections.value());
+        verdict::information_gain(report.fitted, report.result, options, connections.value());
     if (!gain) {
       report.notes.emplace_back(
           "what tells most is known where all strengths and the scatter have values");
@@ -231,6 +236,22 @@ std::string number_text(const verdict::FittedNumber& number, const char* unit, d
                       : fmt::format("no value, {}", interval);
 }
 
+/// Strengths beyond both ends of an interval; none where nothing is known of either.
+std::vector<double> values_about(const verdict::FittedNumber& number) {
+  constexpr int kCount = 80;
+  const auto middle = number.value ? number.value : number.low ? number.low : number.high;
+  if (!middle) {
+    return {};
+  }
+  const double from = number.low ? 0.93 * *number.low : 0.5 * *middle;
+  const double to = number.high ? 1.07 * *number.high : 2 * *middle;
+  std::vector<double> values;
+  for (int i = 0; i <= kCount; ++i) {
+    values.push_back(from + (to - from) * i / kCount);
+  }
+  return values;
+}
+
 void write_number(io::JsonStream& json, const char* key, const verdict::FittedNumber& number) {
   json.key(key);
   json.begin_object();
@@ -256,7 +277,6 @@ base::Result<FitReport> fit_text(std::string_view text, const std::filesystem::p
   }
   FitReport report;
   report.experiments = std::move(read).value();
-  std::vector<Experiment> fitted;
   for (std::size_t i = 0; i < report.experiments.entries.size(); ++i) {
     const ExperimentEntry& entry = report.experiments.entries[i];
     auto experiment = experiment_of(entry, folder);
@@ -266,13 +286,12 @@ base::Result<FitReport> fit_text(std::string_view text, const std::filesystem::p
       error.where = fmt::format("/experiments/{}", i);
       return error;
     }
-    fitted.push_back(std::move(experiment).value());
+    report.fitted.push_back(std::move(experiment).value());
     report.names.push_back(name_of(entry, i));
   }
-  const verdict::FitOptions options{.distribution = report.experiments.distribution,
-                                    .cv = report.experiments.strength_cv};
-  report.result = verdict::fit_strengths(fitted, kClassCount, options);
-  add_next(fitted, options, folder, report);
+  const verdict::FitOptions options = options_of(report.experiments);
+  report.result = verdict::fit_strengths(report.fitted, kClassCount, options);
+  add_next(options, folder, report);
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return report;
 }
@@ -284,6 +303,22 @@ base::Result<FitReport> fit_file(const std::filesystem::path& path) {
   }
   auto report = fit_text(text.value(), path.parent_path());
   return report;
+}
+
+std::string fit_svg(const FitReport& report, std::string_view title,
+                    const io::FigureOptions& figure) {
+  std::vector<io::LikelihoodCurve> curves;
+  for (std::size_t i = 0; i < kClassCount; ++i) {
+    const verdict::FittedNumber& number = report.result.strengths_n[i];
+    auto points = verdict::strength_profile(
+        report.fitted, kClassCount, options_of(report.experiments), i, values_about(number));
+    if (!points.empty()) {
+      curves.push_back({.title = fmt::format("{} strength, N", kClassNames[i]),
+                        .points = std::move(points),
+                        .fitted = number});
+    }
+  }
+  return io::write_likelihood_svg(curves, title, figure);
 }
 
 std::string fit_text_report(const FitReport& report) {

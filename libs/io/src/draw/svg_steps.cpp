@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "draw/chart.hpp"
 #include "draw/svg_layout.hpp"
 #include "holdfast/host/text.hpp"
 #include "holdfast/io/steps_report.hpp"
@@ -61,19 +62,12 @@ double x_of(std::size_t column, std::size_t count) {
   return kLeft + (kRight - kLeft) * static_cast<double>(column) / static_cast<double>(count);
 }
 
-void add_text(std::string& out, double x, double y, std::string_view anchor, double size,
-              std::string_view text, const char* ink = kInkSoft) {
-  out += fmt::format(
-      "<text x=\"{}\" y=\"{}\" text-anchor=\"{}\" font-size=\"{}\" fill=\"{}\">{}</text>\n",
-      number(x), number(y), anchor, number(size), ink, escape(text));
-}
-
 /// A row for every stage, with what its verdict is, runs of one verdict in one piece.
 void add_bands(std::string& out, const std::vector<Column>& columns, bool is_grey) {
   const std::array<const char*, 4>& inks = is_grey ? kVerdictGrey : kVerdictInk;
   for (std::size_t k = 0; k < plan::kStageCount; ++k) {
     const double y = kBandTop + static_cast<double>(k) * (kBandHeight + 3);
-    add_text(out, kLeft - 8, y + 13, "end", 12, plan::name(static_cast<plan::Stage>(k)));
+    add_chart_text(out, kLeft - 8, y + 13, "end", 12, plan::name(static_cast<plan::Stage>(k)));
     for (std::size_t i = 0; i < columns.size();) {
       std::size_t end = i + 1;
       while (end < columns.size() && columns[end].verdicts[k] == columns[i].verdicts[k]) {
@@ -89,17 +83,6 @@ void add_bands(std::string& out, const std::vector<Column>& columns, bool is_gre
       i = end;
     }
   }
-}
-
-/// A round number of at least so much: 1, 2 or 5 times a power of ten.
-double round_up(double value) {
-  const double unit = std::pow(10, std::floor(std::log10(value)));
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * unit >= value) {
-      return factor * unit;
-    }
-  }
-  return 10 * unit;
 }
 
 /// A curve over the steps in one panel.
@@ -128,13 +111,13 @@ void add_curve(std::string& out, const std::vector<Column>& columns, const Curve
   const auto y_of = [&](double value) {
     return top + kPanelHeight * (high - value) / (high - low);
   };
-  add_text(out, kLeft, top - 8, "start", 13, curve.title, kInk);
+  add_chart_text(out, kLeft, top - 8, "start", 13, curve.title, kInk);
   for (const double tick : {low, 0.0, curve.limit, high}) {
     const bool is_limit = tick == curve.limit;
     out += fmt::format("<path d=\"M{} {}H{}\" stroke=\"{}\"{}/>\n", number(kLeft),
                        number(y_of(tick)), number(kRight), is_limit ? "#d1495b" : "#d5d8d6",
                        is_limit ? " stroke-dasharray=\"5 4\"" : "");
-    add_text(out, kLeft - 8, y_of(tick) + 4, "end", 12, fmt::format("{:g}", tick));
+    add_chart_text(out, kLeft - 8, y_of(tick) + 4, "end", 12, fmt::format("{:g}", tick));
   }
   Path path;
   bool is_down = false;
@@ -161,17 +144,17 @@ void add_step_numbers(std::string& out, const plan::SequenceJudgement& judged, d
   const auto stride =
       static_cast<std::size_t>(std::max(1.0, round_up(static_cast<double>(count) / 10)));
   for (std::size_t step = 0; step < count; step += stride) {
-    add_text(out, x_of(step, count), y, "start", 12, fmt::format("{}", step));
+    add_chart_text(out, x_of(step, count), y, "start", 12, fmt::format("{}", step));
   }
-  add_text(out, kRight, y + 16, "end", 12, "step");
+  add_chart_text(out, kRight, y + 16, "end", 12, "step");
   if (judged.first_unsafe) {
     const double x = x_of(judged.first_unsafe->step, count);
     out += fmt::format("<path d=\"M{} {}V{}\" stroke=\"{}\"/>\n", number(x), number(kBandTop - 4),
                        number(y - 14), kInk);
-    add_text(out, x, kBandTop - 8, x > kWidth / 2 ? "end" : "start", 12,
-             fmt::format("first unsafe: step {}, {}", judged.first_unsafe->step,
-                         plan::name(judged.first_unsafe->stage)),
-             kInk);
+    add_chart_text(out, x, kBandTop - 8, x > kWidth / 2 ? "end" : "start", 12,
+                   fmt::format("first unsafe: step {}, {}", judged.first_unsafe->step,
+                               plan::name(judged.first_unsafe->stage)),
+                   kInk);
   }
 }
 
@@ -182,17 +165,14 @@ std::string write_steps_svg(const StepsEntry& entry, const FigureOptions& figure
   const double first_panel = kBandTop + plan::kStageCount * (kBandHeight + 3) + kPanelGap;
   const double second_panel = first_panel + kPanelHeight + kPanelGap;
   const double height = second_panel + kPanelHeight + 44;
-  std::string out = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" {3} "
-      "font-family=\"sans-serif\">\n<rect width=\"{0}\" height=\"{1}\" "
-      "fill=\"{2}\"/>\n",
-      number(kWidth), number(height), kCardFill, size_attributes(figure, kWidth, height));
-  add_text(out, kLeft, 24, "start", 16,
-           fit_text(fmt::format("{}: {}, {}", figure.title.empty() ? entry.name : figure.title,
-                                host::counted(entry.judgement->steps.size(), "step"),
-                                verdict::name(entry.judgement->verdict())),
-                    16, kRight - kLeft),
-           kInk);
+  std::string out = chart_begin(figure, kWidth, height);
+  add_chart_text(
+      out, kLeft, 24, "start", 16,
+      fit_text(fmt::format("{}: {}, {}", figure.title.empty() ? entry.name : figure.title,
+                           host::counted(entry.judgement->steps.size(), "step"),
+                           verdict::name(entry.judgement->verdict())),
+               16, kRight - kLeft),
+      kInk);
   add_bands(out, columns, figure.is_grey);
   add_curve(out, columns,
             {.value = &Column::ratio,

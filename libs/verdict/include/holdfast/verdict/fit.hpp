@@ -74,6 +74,24 @@ inline constexpr double kContradiction = 0.01;
 FitResult fit_strengths(std::span<const Experiment> experiments, std::size_t class_count,
                         const FitOptions& options = {});
 
+/// The most by which the logarithm of the likelihood is below its maximum in an interval at 95 %:
+/// half of that quantile of chi squared with one degree of freedom.
+inline constexpr double kIntervalDrop = 1.920729;
+
+/// A value of a number and how likely it is, the others chosen best: the logarithm of the
+/// likelihood less its maximum.
+struct ProfilePoint {
+  double value = 0;
+  double log_likelihood = 0;
+};
+
+/// The profile of a class's strength at `values`, N, which ascend; none where experiments tell
+/// nothing of it.
+std::vector<ProfilePoint> strength_profile(std::span<const Experiment> experiments,
+                                           std::size_t class_count, const FitOptions& options,
+                                           std::size_t strength_class,
+                                           std::span<const double> values);
+
 /// How much a further experiment, of which only is seen whether it holds, would tell of the fitted
 /// numbers: the logarithm of the factor by which the determinant of Fisher's information grows, in
 /// the mean over its outcomes. `experiments` are those that were fitted. None where the fit has a
