@@ -94,7 +94,7 @@ _holdfast() {
         --seconds) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --json --csv --svg --size --title --grey --view --no-legend --html --limit --exact --seconds -q --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --json --csv --svg --size --title --grey --view --no-legend --html --limit --exact --seconds -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     order)
