@@ -165,6 +165,18 @@ class SimulateRun {
            !options_.story.empty();
   }
 
+  /// Says of a robot that bends, of which only the verdict on all of it is compared with the exact
+  /// one, that its modules do not know it.
+  void note_linear_theory(const io::Document& document) const {
+    const auto spec = io::make_spec(document);
+    if (spec && spec.value().is_modulus_stated) {
+      const std::string note =
+          "the elastic modulus is stated, and the modules' program knows linear theory alone: it "
+          "may call safe what buckles, which holdfast steps and holdfast next do not";
+      print_notes(std::span(&note, 1), options_.file);
+    }
+  }
+
   int run_next() {
     if (has_happenings()) {
       return usage_error(
@@ -175,6 +187,7 @@ class SimulateRun {
     if (!structure) {
       return fail(structure.error(), options_.file);
     }
+    note_linear_theory(structure.value().document);
     const auto simulated = simulate_next(
         structure.value(),
         {.simulation = simulation_, .progress = [this](std::size_t done, std::size_t count) {
@@ -220,6 +233,7 @@ class SimulateRun {
     if (!file) {
       return fail(file.error(), options_.file);
     }
+    note_linear_theory(file.value().document);
     return options_.judges_stages ? run_stages(file.value()) : run_kept(file.value());
   }
 

@@ -25,6 +25,20 @@ verdict::Reason robot_reason(const sim::SimulationResult& result) {
           .quoted = agent::name(result.answer.reason)};
 }
 
+/// Modules know nothing of bending: what they call safe is undecided where that is what leaves the
+/// exact answer undecided.
+void doubt_what_bends(const verdict::Assessment& exact, verdict::Assessment& view) {
+  using verdict::ReasonCode;
+  if (view.verdict != verdict::Verdict::kSafe || exact.verdict != verdict::Verdict::kUndecided) {
+    return;
+  }
+  const verdict::Reason& why = exact.reasons.front();
+  if (why.code == ReasonCode::kSecondOrder || why.code == ReasonCode::kDisplacedMass) {
+    view.verdict = verdict::Verdict::kUndecided;
+    view.reasons.insert(view.reasons.begin(), why);
+  }
+}
+
 /// The load ratio that the module holds which owns the connection: an existing one knows those of
 /// its faces, the host of planned modules those between them.
 std::optional<float> find_load_ratio(const model::Robot& robot, const Agents& agents,
@@ -154,6 +168,7 @@ verdict::Assessment view_of(const model::Robot& robot, const verdict::Assessment
   verdict::Assessment view = exact;
   view.verdict = to_verdict(result.answer.verdict);
   view.reasons = {robot_reason(result)};
+  doubt_what_bends(exact, view);
   view.broken.clear();
   view.worst.reset();
   view.load_ratio_max.reset();

@@ -100,7 +100,7 @@ void write_answer(TextOut out, const Structure& structure, const CheckResult& ex
     fmt::format_to(out, ", load ratio {}  {}", io::beside_one(*truth.load_ratio_max, 4),
                    model::ends_text(structure.robot, *truth.worst));
   }
-  fmt::format_to(out, "\n  robot       {}", verdict::name(run.view.verdict));
+  fmt::format_to(out, "\n  robot       {}", verdict::name(to_verdict(answer.verdict)));
   if (has_worst(run.result)) {
     const auto& [a, b] = run.worst_cells;
     fmt::format_to(out, ", load ratio {}  ({},{},{})-({},{},{}){}",
@@ -122,7 +122,7 @@ void write_refused(TextOut out, const RefusedMessages& refused) {
 void write_distributed(io::JsonStream& json, const DistributedRun& run) {
   const sim::SimulationResult& result = run.result;
   const agent::Answer& answer = result.answer;
-  json.member("verdict", verdict::name(run.view.verdict));
+  json.member("verdict", verdict::name(to_verdict(answer.verdict)));
   json.member("reason", agent::name(answer.reason));
   json.member("load_ratio_max", load_ratio_max(answer));
   json.key("at");

@@ -116,6 +116,33 @@ TEST(Simulate, ends_when_the_caller_says_so_and_claims_nothing_then) {
   EXPECT_FALSE(run.value().result.is_quiet);
 }
 
+// Modules know nothing of bending, without which a pole of any height stands.
+TEST(Simulate, is_undecided_where_what_modules_call_safe_bends_away) {
+  int undecided = 0;
+  for (const double modulus : {1.0, 4.0, 1e6}) {
+    for (int height : {3, 10, 30}) {
+      std::string cells;
+      for (int z = 0; z < height; ++z) {
+        cells += (z > 0 ? ", " : "") + std::string("[0,0,") + std::to_string(z) + "]";
+      }
+      const auto pole =
+          load_text(R"({"format": "holdfast-structure", "version": 2, "material": {)" +
+                        std::string(R"("elastic_modulus_mpa": )") + std::to_string(modulus) +
+                        R"(}, "modules": [)" + cells + "]}",
+                    "pole");
+      ASSERT_TRUE(pole) << pole.error().message;
+      const CheckResult exact = check(pole.value());
+      const auto run = simulate(pole.value(), exact, {});
+      ASSERT_TRUE(run);
+      EXPECT_EQ(run.value().result.answer.verdict, agent::Verdict::kSafe);
+      EXPECT_EQ(run.value().view.verdict, exact.assessment.verdict) << modulus << " " << height;
+      undecided += exact.assessment.verdict == verdict::Verdict::kUndecided ? 1 : 0;
+    }
+  }
+  EXPECT_GE(undecided, 2);
+  EXPECT_LE(undecided, 6);
+}
+
 TEST(Simulate, reports_what_it_found_beside_the_exact_answer) {
   const Structure structure = post();
   const CheckResult exact = check(structure);
