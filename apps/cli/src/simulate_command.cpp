@@ -168,8 +168,7 @@ class SimulateRun {
   /// Says of a robot that bends, of which only the verdict on all of it is compared with the exact
   /// one, that its modules do not know it.
   void note_linear_theory(const io::Document& document) const {
-    const auto spec = io::make_spec(document);
-    if (spec && spec.value().is_modulus_stated) {
+    if (io::is_modulus_stated(document)) {
       const std::string note =
           "the elastic modulus is stated, and the modules' program knows linear theory alone: it "
           "may call safe what buckles, which holdfast steps and holdfast next do not";
