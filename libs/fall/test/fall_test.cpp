@@ -46,9 +46,11 @@ Scene scene_of(std::vector<Body> bodies) {
 }
 
 Point turned(const Pose& pose, const Point& p) {
-  const auto [w, x, y, z] = pose.turn;
+  const double w = pose.turn[0];
+  const Point axis = {pose.turn[1], pose.turn[2], pose.turn[3]};
   const auto cross = [&](const Point& v) {
-    return Point{y * v[2] - z * v[1], z * v[0] - x * v[2], x * v[1] - y * v[0]};
+    return Point{axis[1] * v[2] - axis[2] * v[1], axis[2] * v[0] - axis[0] * v[2],
+                 axis[0] * v[1] - axis[1] * v[0]};
   };
   const Point once = cross(p);
   const Point twice = cross(once);
