@@ -323,7 +323,7 @@ test('what breaks falls as the program says, round by round, and is put together
   const { cascade } = ask(scenario('arm_breaks_b'), '--cascade');
   const shown = await page.evaluate(() => {
     const { pieces } = globalThis.holdfast.app.toppling;
-    return { cascade: pieces.breaking.cascade, fallen: [...pieces.fallen(100)].map((slot) => globalThis.holdfast.bench.robot.cellAt(slot)) };
+    return { cascade: pieces.breaking.cascade, fallen: [...pieces.fallen(pieces.begun(100))].map((slot) => globalThis.holdfast.bench.robot.cellAt(slot)) };
   });
   assert.deepEqual(shown.cascade, cascade);
   assert.deepEqual(new Set(shown.fallen.map(String)), new Set(cascade.rounds.flatMap(({ fallen }) => fallen.map(String))));
@@ -351,6 +351,41 @@ test('what breaks falls as the program says, round by round, and is put together
   await page.keyboard.press('t');
   assert.deepEqual(await page.evaluate(() => [globalThis.holdfast.app.isToppled, globalThis.holdfast.app.view.exaggeration, globalThis.holdfast.app.view.paintOver === undefined]), [false, 0, true]);
   assert.equal(await page.innerText('#topple'), 'Let it break');
+  assert.deepEqual(page.faults, []);
+});
+
+test('one thing moves modules at a time: a fall, the shape under load, the collapse, the robot’s own computation', async () => {
+  const page = await openPage(browser, { viewport: DESKTOP, reducedMotion: 'no-preference' });
+  await openExample(page, 'arm_breaks_b');
+  const state = () => page.evaluate(() => {
+    const { app, player } = globalThis.holdfast;
+    return { isToppled: app.isToppled, factor: app.view.exaggeration, isPlaying: player.trace !== undefined, hasPose: app.view.mechanism !== undefined };
+  });
+  const fall = async () => {
+    await page.click('#topple');
+    await page.waitForFunction(() => globalThis.holdfast.app.isToppled);
+    const { factor, hasPose, isPlaying } = await state();
+    assert.deepEqual([factor, hasPose, isPlaying], [1, true, false]);
+  };
+  await fall();
+  await page.fill('#exaggeration', '50');
+  assert.deepEqual([(await state()).isToppled, (await state()).hasPose], [false, false]);
+  await fall();
+  assert.equal(await page.inputValue('#exaggeration'), '0');
+  await page.click('#simulate');
+  await page.waitForFunction(() => globalThis.holdfast.player.trace !== undefined);
+  assert.deepEqual(await state(), { isToppled: false, factor: 0, isPlaying: true, hasPose: false });
+  await fall();
+  await page.click('#find-limit');
+  await page.waitForSelector('#collapse:not([hidden])');
+  await page.click('#collapse');
+  assert.equal((await state()).isToppled, false);
+  assert.equal((await state()).hasPose, true);
+  await fall();
+  await page.click('#deform');
+  await page.waitForFunction(() => globalThis.holdfast.app.mode === 'deformed');
+  assert.deepEqual([(await state()).isToppled, (await state()).hasPose], [false, false]);
+  assert.equal(await page.isVisible('#breaking'), false);
   assert.deepEqual(page.faults, []);
 });
 

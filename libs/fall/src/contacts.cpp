@@ -63,6 +63,9 @@ void ContactFinder::meet_floor(MovingBody& body, double margin, std::vector<Cont
 }
 
 void ContactFinder::meet_still(MovingBody& body, double margin, std::vector<Contact>& found) const {
+  if (still_.nodes().empty()) {
+    return;
+  }
   for (const Vector3d& own : body.outer_nodes()) {
     const Vector3d node = body.global(own);
     still_.for_each_near(node, scene_.pitch_mm + margin, [&](const Vector3d& still) {

@@ -287,6 +287,9 @@ export class App {
   }
 
   setExaggeration(share: number): number {
+    if (share > 0) {
+      this.stopTopple();
+    }
     const factor = share === 0 ? 0 : this.exaggerationMax() ** share;
     this.view.exaggeration = factor;
     return factor;

@@ -26,6 +26,7 @@ export class Collapse {
     app.stage.motions.push((now) => this.move(now));
     app.bench.robotListeners.push(() => this.forget());
     app.exhibitListeners.push(() => this.stop());
+    app.fallListeners.push(() => app.isToppled && this.stop());
   }
 
   show(limit: LimitLoad | null): void {
@@ -61,6 +62,7 @@ export class Collapse {
     if (!finding || this.running || !this.shown || bench.refusesNow()) {
       return;
     }
+    this.app.stopTopple();
     const { robot, limit } = this.shown;
     const motions = new Float64Array(6 * robot.count);
     finding.slots.forEach((slot, module) => motions.set(limit.velocities[module], 6 * slot));

@@ -64,6 +64,7 @@ export class Player {
     app.stage.motions.push((now) => this.animate(now));
     app.bench.robotListeners.push(() => this.close());
     app.exhibitListeners.push(() => this.close());
+    app.fallListeners.push(() => app.isToppled && this.trace && this.close());
     byId('simulate').onclick = () => void this.run();
     this.button('phase-back', 'phaseBack', () => this.jump(this.phaseStops, -1));
     this.button('step-back', 'stepBack', () => this.jump(this.stops, -1));
@@ -122,6 +123,7 @@ export class Player {
       this.close();
       return;
     }
+    app.stopTopple();
     this.close();
     byId('simulate').textContent = 'Stop the simulation';
     const value = (id: string) => Number(byId<HTMLSelectElement>(id).value);
@@ -140,6 +142,7 @@ export class Player {
 
   private open(trace: Trace, slots: Int32Array): void {
     const { app } = this;
+    app.stopTopple();
     this.trace = trace;
     this.slots = slots;
     this.moduleOf = new Int32Array(slots.length);

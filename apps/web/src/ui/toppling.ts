@@ -20,7 +20,8 @@ const DEPTH_CELLS = 6;
 export class Toppling {
   private readonly question = new Question();
   private playing?: { pieces: FallingPieces; seconds: number; last: number };
-  private fallenCount = 0;
+  /** Rounds of the fall whose modules have its colour. */
+  private begun = 0;
   isSlow = false;
 
   constructor(
@@ -54,11 +55,12 @@ export class Toppling {
     if (breaking) {
       const pieces = new FallingPieces(robot, slots, breaking);
       this.playing = { pieces, seconds: 0, last: 0 };
+      // Whoever else moves or colours modules ends that.
+      this.tell();
       this.view.show(robot, { answer: finding.answer!, slots: finding.slots }, true);
       this.view.exaggeration = 1;
       this.keepInPicture(robot, slots, pieces);
       this.play();
-      this.tell();
     }
   }
 
@@ -80,7 +82,7 @@ export class Toppling {
     this.question.cancel();
     if (this.playing) {
       this.playing = undefined;
-      this.fallenCount = 0;
+      this.begun = 0;
       this.view.paintOver = undefined;
       this.view.exaggeration = 0;
       this.view.pose(undefined);
@@ -120,9 +122,10 @@ export class Toppling {
     const { view } = this;
     view.pose(pieces.at(seconds));
     this.ground.follow(pieces.whole(seconds));
-    const fallen = pieces.fallen(seconds);
-    if (fallen.size !== this.fallenCount) {
-      this.fallenCount = fallen.size;
+    const begun = pieces.begun(seconds);
+    if (begun !== this.begun) {
+      this.begun = begun;
+      const fallen = pieces.fallen(begun);
       view.paintOver = fallen.size > 0 ? (slot) => (fallen.has(slot) ? UNSTABLE : undefined) : undefined;
       view.paint();
     }

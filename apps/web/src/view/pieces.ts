@@ -66,11 +66,15 @@ export class FallingPieces {
     return motions;
   }
 
-  /** Slots of the modules of rounds that have begun. */
-  fallen(seconds: number): ReadonlySet<number> {
-    const { cascade: { rounds }, round_s: begins } = this.breaking;
-    const begun = rounds.filter((_, round) => begins[round] <= seconds);
-    return new Set(begun.flatMap(({ fallen }) => fallen.map((cell) => this.robot.slot(cell)!)));
+  /** How many rounds have begun. */
+  begun(seconds: number): number {
+    return this.breaking.round_s.filter((begin) => begin <= seconds).length;
+  }
+
+  /** Slots of the modules that fall in the first rounds. */
+  fallen(roundCount: number): ReadonlySet<number> {
+    const rounds = this.breaking.cascade.rounds.slice(0, roundCount);
+    return new Set(rounds.flatMap(({ fallen }) => fallen.map((cell) => this.robot.slot(cell)!)));
   }
 
   /** The motion of the whole robot where it falls in one piece, lengths in pitches; none if something stands. */
