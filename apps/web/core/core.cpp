@@ -300,18 +300,23 @@ Reply deformed_request(const Request& request) {
 }
 
 /// Text: what report_text() says of the probability that every connection holds, where each
-/// strength scatters by options[0] thousandths and all together by options[1], and that as a
-/// number, null where it is not known.
+/// strength scatters by options[0] thousandths, all together by options[1] and each mass by
+/// options[2], and that as a number, null where it is not known.
 Reply reliability_request(const Request& request) {
+  const auto spec = spec_of(request);
   const auto robot = robot_of(request);
   if (!robot) {
     return failure(robot.error());
   }
-  const verdict::StrengthScatter scatter{.cv = request.header.options[0] / 1000.0,
-                                         .common_cv = request.header.options[1] / 1000.0};
+  verdict::StrengthScatter scatter{.cv = request.header.options[0] / 1000.0,
+                                   .common_cv = request.header.options[1] / 1000.0};
+  if (request.header.options[2] > 0) {
+    scatter.mass_cv.assign(robot.value().modules().size(), request.header.options[2] / 1000.0);
+  }
   const CheckResult result = check(robot.value());
   const auto found = find_reliability(
-      AssessedRobot{.robot = robot.value(), .assessment = result.assessment}, scatter);
+      AssessedRobot{.robot = robot.value(), .assessment = result.assessment, .spec = &spec.value()},
+      scatter, {.thread_count = 1});
   return {.text = dump({{"holds", found ? Json(found->holds) : Json()},
                         {"fails", found ? Json(found->fails) : Json()},
                         {"text", reliability_text(robot.value(), found)}}),

@@ -459,12 +459,13 @@ test('before a module is taken away it is known what would be left, as the progr
 
 test('how sure it is where strengths scatter is what the program says', async () => {
   const page = await openPage(browser, { viewport: DESKTOP });
-  for (const [name, scatter, common] of [['arm_breaks_b', 10, 0], ['arm_breaks_a', 30, 10]]) {
+  for (const [name, scatter, common, mass] of [['arm_breaks_b', 10, 0, 0], ['arm_breaks_a', 30, 10, 0], ['arm_breaks_b', 10, 0, 20]]) {
     await openExample(page, name);
     await page.fill('#scatter', String(scatter));
     await page.fill('#scatter-common', String(common));
+    await page.fill('#scatter-mass', String(mass));
     await page.waitForFunction(() => / p = /.test(document.getElementById('chip-numbers').textContent) && document.getElementById('sure-text').textContent !== '');
-    const options = ['--scatter', `${scatter}%`, ...(common ? ['--scatter-common', `${common}%`] : [])];
+    const options = ['--scatter', `${scatter}%`, ...(common ? ['--scatter-common', `${common}%`] : []), ...(mass ? ['--scatter-mass', `${mass}%`] : [])];
     const { probability_holds: holds, probability_fails: fails } = ask(scenario(name), ...options).reliability;
     const [, word, shown] = /(holds|fails) with p = ([\d.e-]+)/.exec(await numbers(page));
     const expected = word === 'holds' ? holds : fails;

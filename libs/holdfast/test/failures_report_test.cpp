@@ -55,6 +55,31 @@ TEST(FailuresReport, has_the_probability_and_who_fails) {
   EXPECT_NE(text.find("is the likeliest to fail"), std::string::npos) << text;
 }
 
+// However little scatters, and whatever does: only a robot that nothing pulls apart holds with any
+// strengths.
+TEST(FailuresReport, says_that_nothing_is_pulled_only_where_nothing_is) {
+  int pulled = 0;
+  for (const std::int32_t length : {1, 3}) {
+    const Structure structure = post(length);
+    const CheckResult result = check(structure);
+    const bool is_pulled = result.assessment.load_ratio_max.value() > 1e-9;
+    pulled += is_pulled ? 1 : 0;
+    for (const double cv : {0.0, 0.005, 0.1, 0.4}) {
+      for (const double mass_cv : {0.0, 0.02}) {
+        verdict::StrengthScatter scatter = {.cv = std::max(cv, verdict::kCvMin)};
+        if (mass_cv > 0) {
+          scatter.mass_cv.assign(structure.robot.modules().size(), mass_cv);
+        }
+        const std::string text =
+            reliability_text(structure.robot, find_reliability(structure, result, scatter));
+        const bool says_none = text.find("whatever the strengths") != std::string::npos;
+        EXPECT_EQ(says_none, !is_pulled) << length << " " << text;
+      }
+    }
+  }
+  EXPECT_EQ(pulled, 1);
+}
+
 TEST(FailuresReport, says_where_no_probability_is_known) {
   const Structure structure = post(40);  // It topples.
   const verdict::StrengthScatter scatter = {.cv = 0.1};

@@ -68,8 +68,8 @@ export class CoreClient {
     return this.call('deformed', [robot, factor]);
   }
 
-  reliability(robot: RobotData, scatter: number, together: number): Promise<Sureness> {
-    return this.call('reliability', [robot, scatter, together]);
+  reliability(robot: RobotData, scatter: number, together: number, masses: number): Promise<Sureness> {
+    return this.call('reliability', [robot, scatter, together, masses]);
   }
 
   loseOne(robot: RobotData, secondsMax: number): Promise<Losses> {

@@ -148,9 +148,9 @@ export class Core {
     return { ...(JSON.parse(text) as Omit<Why, 'hanging'>), hanging: integers };
   }
 
-  /** How sure it is, where each strength scatters by a share of itself, and all together. Throws CoreError. */
-  reliability(robot: RobotData, scatter: number, together: number): Sureness {
-    const options = [scatter, together].map((share) => Math.round(1000 * share));
+  /** How sure it is, where each strength scatters by a share of itself, all together, and each mass. Throws CoreError. */
+  reliability(robot: RobotData, scatter: number, together: number, masses = 0): Sureness {
+    const options = [scatter, together, masses].map((share) => Math.round(1000 * share));
     return JSON.parse(this.call('reliability', request(robot, options)).text) as Sureness;
   }
 

@@ -110,9 +110,9 @@ export class Holdfast {
     return this.core.limit(this.open(structure), seconds);
   }
 
-  /** How sure it is that every connection holds where strengths scatter by a share, each by itself and all together. */
-  reliability(structure: Structure, scatter: number, together = 0): Sureness {
-    return this.core.reliability(this.open(structure), scatter, together);
+  /** How sure it is that every connection holds where strengths scatter by a share, each by itself and all together, and masses. */
+  reliability(structure: Structure, scatter: number, together = 0, masses = 0): Sureness {
+    return this.core.reliability(this.open(structure), scatter, together, masses);
   }
 
   /** What follows from the loss of any single connection, module or foot. */

@@ -9,6 +9,8 @@ import { byId, tell } from './dom';
 /** How sure it is where strengths scatter, and what follows from the loss of each single part. */
 
 const DELAY_MS = 120;
+/** Of each strength, without which nothing is asked, of all together, of each mass. */
+const SLIDERS = ['scatter', 'scatter-common', 'scatter-mass'] as const;
 /** Losses that are not judged by then are undecided. */
 const LOSS_SECONDS = 30;
 
@@ -20,29 +22,28 @@ export class Sure {
   private timer = 0;
 
   constructor(private readonly app: App) {
-    for (const slider of [byId('scatter'), byId('scatter-common')]) {
+    for (const slider of SLIDERS.map(byId)) {
       slider.oninput = () => this.changed();
     }
     app.bench.robotListeners.push(() => this.changed());
   }
 
   private changed(): void {
-    const [own, common] = ['scatter', 'scatter-common'].map((id) => Number(byId<HTMLInputElement>(id).value) / 100);
-    byId('scatter-value').textContent = `±${Math.round(100 * own)} %`;
-    byId('scatter-common-value').textContent = `±${Math.round(100 * common)} %`;
+    const shares = SLIDERS.map((id) => Number(byId<HTMLInputElement>(id).value) / 100);
+    SLIDERS.forEach((id, i) => (byId(`${id}-value`).textContent = `±${Math.round(100 * shares[i])} %`));
     this.question.cancel();
     this.app.note = '';
     byId('sure-text').textContent = '';
     clearTimeout(this.timer);
-    if (own > 0 && this.app.bench.robot.count > 0) {
-      this.timer = window.setTimeout(() => void this.ask(own, common), DELAY_MS);
+    if (shares[0] > 0 && this.app.bench.robot.count > 0) {
+      this.timer = window.setTimeout(() => void this.ask(shares), DELAY_MS);
     }
   }
 
-  private async ask(own: number, common: number): Promise<void> {
+  private async ask([own, common, masses]: number[]): Promise<void> {
     const { data } = this.app.bench.robot.toData();
     try {
-      const sure = await this.question.ask((core) => core.reliability(data, own, common));
+      const sure = await this.question.ask((core) => core.reliability(data, own, common, masses));
       if (sure) {
         byId('sure-text').textContent = sure.text.replace(/^ +(reliability +)?/gm, '').trim();
         this.app.note = sure.holds === null ? '' : probabilityText(sure.holds, sure.fails!);

@@ -51,11 +51,18 @@ std::string scatter_text(const verdict::StrengthScatter& scatter) {
   return text;
 }
 
-std::string probability_text(const Reliability& found) {
-  if (found.likeliest.empty()) {
-    return fmt::format("holds whatever the strengths ({}): no connection is pulled",
-                       scatter_text(found.scatter));
+/// Of a robot in which no connection fails: none can, or it was too rare to be seen.
+std::string never_text(const Reliability& found) {
+  const std::string scatter = scatter_text(found.scatter);
+  if (!found.strength_factor_99) {
+    return fmt::format("holds whatever the strengths ({}): no connection is pulled", scatter);
   }
+  return found.sample_count > 0
+             ? fmt::format("holds in all of {} samples of masses ({})", found.sample_count, scatter)
+             : fmt::format("fails with a probability below 1e-300 ({})", scatter);
+}
+
+std::string probability_text(const Reliability& found) {
   std::string text = found.fails < kRarely
                          ? fmt::format("fails with probability {:.2g}", found.fails)
                          : fmt::format("holds with probability {:.3g}", found.holds);
@@ -82,14 +89,16 @@ std::string reliability_text(const model::Robot& robot,
     return line("reliability", kUnknown);
   }
   const Reliability& found = *reliability;
-  if (found.likeliest.empty()) {
-    return line("reliability", probability_text(found));
+  std::string text = never_text(found);
+  if (!found.likeliest.empty()) {
+    const verdict::FailingConnection& first = found.likeliest.front();
+    text = fmt::format("{}; {} is the likeliest to fail, in {:.0f} % of the cases",
+                       probability_text(found), model::ends_text(robot, first.connection),
+                       100 * first.share);
+  } else if (!found.strength_factor_99) {
+    return line("reliability", text);
   }
-  const verdict::FailingConnection& first = found.likeliest.front();
-  return line("reliability",
-              fmt::format("{}; {} is the likeliest to fail, in {:.0f} % of the cases",
-                          probability_text(found), model::ends_text(robot, first.connection),
-                          100 * first.share)) +
+  return line("reliability", text) +
          line("", fmt::format("for 99 % {} the strengths, for 99.9 % {}",
                               factor_text(found.strength_factor_99),
                               factor_text(found.strength_factor_999))) +
