@@ -283,6 +283,54 @@ double bound(const std::vector<double>& samples, double direction) {
   return clamped(mean + direction * 3 * std::sqrt(variance / static_cast<double>(count)));
 }
 
+/// If none of n samples shows an event, its probability is below this over n, as surely as a mean
+/// is within three standard deviations: -log(0.00135).
+constexpr double kUnseen = 6.6;
+/// Fewer events than these say too little of how often they come.
+constexpr double kSeenMin = 10;
+/// A load ratio that is farther from its limit, in standard deviations, does not come there.
+constexpr double kFarDeviations = 6;
+
+/// Whether masses that scatter as in the samples may bring any load ratio to the other side of 1.
+bool may_cross_limit(std::span<const LoadCase> cases) {
+  std::vector<double> sum;
+  std::vector<double> square;
+  double count = 0;
+  for (const LoadCase& one : cases) {
+    if (one.state == CaseState::kKnown) {
+      sum.resize(one.ratios.size());
+      square.resize(one.ratios.size());
+      for (std::size_t i = 0; i < one.ratios.size(); ++i) {
+        sum[i] += one.ratios[i];
+        square[i] += one.ratios[i] * one.ratios[i];
+      }
+      ++count;
+    }
+  }
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    const double mean = sum[i] / count;
+    const double deviation = std::sqrt(std::max(0.0, square[i] / count - mean * mean));
+    if (std::abs(1 - mean) < kFarDeviations * deviation) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Widens the bounds where samples are too few to show how rarely the robot holds, or does not.
+void doubt_rare_events(std::span<const LoadCase> cases, Reliability& found) {
+  const auto count = static_cast<double>(cases.size());
+  const bool is_rare = std::min(found.fails, found.holds) * count < kSeenMin;
+  if (is_rare && may_cross_limit(cases)) {
+    found.holds_low = count * found.fails < kSeenMin
+                          ? clamped(std::min(found.holds_low, found.holds - kUnseen / count))
+                          : found.holds_low;
+    found.holds_high = count * found.holds < kSeenMin
+                           ? clamped(std::max(found.holds_high, found.holds + kUnseen / count))
+                           : found.holds_high;
+  }
+}
+
 }  // namespace
 
 Reliability find_reliability(std::span<const LoadCase> cases, const StrengthScatter& scatter,
@@ -296,6 +344,7 @@ Reliability find_reliability(std::span<const LoadCase> cases, const StrengthScat
   if (cases.size() > 1) {
     found.holds_low = std::min(found.holds, bound(all.each_holds(0), -1));
     found.holds_high = std::max(found.holds, bound(all.each_holds(1), 1));
+    doubt_rare_events(cases, found);
   }
   found.likeliest = likeliest(cases, scatter, found.fails, likeliest_max);
   found.strength_factor_99 = strength_factor(all, 0.01);

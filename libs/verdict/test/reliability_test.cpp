@@ -34,6 +34,41 @@ double lognormal_below(double value, double variance_of_log) {
 
 double variance_of_log(double cv) { return std::log(1 + cv * cv); }
 
+double normal_draw(base::Rng& rng) {
+  double sum = -6;
+  for (int i = 0; i < 12; ++i) {
+    sum += static_cast<double>(rng.below(1U << 20U)) / (1U << 20U);
+  }
+  return sum;
+}
+
+// Strengths as given, and masses under which the one connection breaks in one of 30 to 30,000
+// cases: of 256 samples often none does.
+TEST(Reliability, that_samples_are_too_few_for_is_within_its_bounds) {
+  int within = 0;
+  int count = 0;
+  for (const double z : {1.8, 2.5, 3.0, 3.5, 4.0}) {
+    const double holds = normal_below(z);
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+      base::Rng rng(seed);
+      std::vector<LoadCase> cases;
+      for (int i = 0; i < 128; ++i) {
+        const double way = 0.1 * normal_draw(rng);
+        const double mean = 1 - 0.1 * z;
+        cases.push_back({.ratios = {mean + way}});
+        cases.push_back({.ratios = {mean - way}});
+      }
+      const Reliability found = find_reliability(cases, {.cv = kCvMin});
+      within += found.holds_low <= holds && holds <= found.holds_high ? 1 : 0;
+      ++count;
+    }
+  }
+  EXPECT_GE(within, count - count / 50) << count;
+  // Far from the limit there is no doubt.
+  const std::vector<LoadCase> far = {{.ratios = {0.3}}, {.ratios = {0.32}}};
+  EXPECT_EQ(find_reliability(far, {.cv = kCvMin}).holds_low, 1);
+}
+
 TEST(Reliability, of_one_connection_is_its_distribution_even_far_out) {
   for (const double ratio : {0.05, 0.3, 0.7, 0.95, 1.0, 1.3}) {
     const double fails = lognormal_below(ratio, variance_of_log(0.1));

@@ -51,7 +51,7 @@ std::string scatter_text(const verdict::StrengthScatter& scatter) {
   return text;
 }
 
-/// Of a robot in which no connection fails: none can, or it was too rare to be seen.
+/// Says of a robot in which no connection fails that none can, or that it was too rare to be seen.
 std::string never_text(const Reliability& found) {
   const std::string scatter = scatter_text(found.scatter);
   if (!found.strength_factor_99) {
@@ -74,8 +74,14 @@ std::string probability_text(const Reliability& found) {
   return text;
 }
 
-std::string factor_text(const std::optional<double>& factor) {
-  return factor ? fmt::format("{:.3g} times", *factor) : std::string("no factor of");
+/// How strong connections would have to be.
+std::string factors_text(const Reliability& found) {
+  const auto times = [](const std::optional<double>& factor, const char* what, const char* none) {
+    return factor ? fmt::format("{:.3g} times{}", *factor, what) : std::string(none);
+  };
+  return fmt::format("for 99 % {}, for 99.9 % {}",
+                     times(found.strength_factor_99, " the strengths", "no strengths suffice"),
+                     times(found.strength_factor_999, "", "none"));
 }
 
 }  // namespace
@@ -98,10 +104,7 @@ std::string reliability_text(const model::Robot& robot,
   } else if (!found.strength_factor_99) {
     return line("reliability", text);
   }
-  return line("reliability", text) +
-         line("", fmt::format("for 99 % {} the strengths, for 99.9 % {}",
-                              factor_text(found.strength_factor_99),
-                              factor_text(found.strength_factor_999))) +
+  return line("reliability", text) + line("", factors_text(found)) +
          (found.changed_count == 0
               ? std::string()
               : line("", fmt::format("facets are in other states in {} of {} samples of masses",
