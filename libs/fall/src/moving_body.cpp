@@ -19,7 +19,7 @@ std::vector<Vector3d> nodes_from(const Body& body, const Vector3d& centre) {
   std::vector<Vector3d> nodes;
   nodes.reserve(body.nodes.size());
   for (const Point& node : body.nodes) {
-    nodes.push_back(vector_of(node) - centre);
+    nodes.emplace_back(vector_of(node) - centre);
   }
   return nodes;
 }
@@ -88,7 +88,7 @@ MovingBody::MovingBody(const Body& body, const Scene& scene)
     if (near <= scene.neighbour_count_max) {
       outer_.push_back(nodes[i]);
       for (const Point& corner : scene.corners) {
-        feet_.push_back(nodes[i] + vector_of(corner));
+        feet_.emplace_back(nodes[i] + vector_of(corner));
       }
     }
   }
