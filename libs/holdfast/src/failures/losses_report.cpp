@@ -125,7 +125,7 @@ std::string headline(const LossReport& report) {
 }  // namespace
 
 std::string loss_words(const plan::Loss& loss) {
-  const std::string cell = model::text(loss.cells[0]);
+  std::string cell = model::text(loss.cells[0]);
   switch (loss.kind) {
     case LossKind::kConnection:
       return cell + "-" + model::text(loss.cells[1]);

@@ -43,12 +43,12 @@ class PlanWalk {
     return std::nullopt;
   }
 
-  PlanFailures take() && {
+  PlanFailures take() {
     if (found_.first_unknown && !is_known_) {
       found_.probability_min.reset();
       found_.least.reset();
     }
-    return std::move(found_);
+    return found_;
   }
 
  private:
@@ -198,7 +198,7 @@ base::Result<PlanFailures> find_plan_failures(const io::Document& document,
   if (error) {
     return *std::move(error);
   }
-  return std::move(walk).take();
+  return walk.take();
 }
 
 std::string plan_failures_text(const PlanFailuresWish& wish, const PlanFailures& found) {

@@ -203,6 +203,7 @@ class Breaking {
   std::vector<base::Cell> cells_of(std::vector<std::int32_t> modules) const {
     std::ranges::sort(modules);
     std::vector<base::Cell> cells;
+    cells.reserve(modules.size());
     for (const std::int32_t module : modules) {
       cells.push_back(whole_.modules()[at(module)].cell);
     }

@@ -133,6 +133,7 @@ void LossJudge::find_inverse(std::span<const LostPart> parts) {
   std::ranges::sort(pairs);
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   std::vector<solver::Edge> edges;
+  edges.reserve(pairs.size());
   for (const auto& [a, b] : pairs) {
     edges.push_back({static_cast<std::int32_t>(a), static_cast<std::int32_t>(b)});
   }

@@ -190,6 +190,7 @@ class LossSearch {
   /// Judges these exactly, as far as that goes without checks.
   void judge_all(const std::vector<std::size_t>& some, bool is_again) {
     std::vector<const LostPart*> asked;
+    asked.reserve(some.size());
     for (const std::size_t i : some) {
       asked.push_back(&parts_[i]);
     }
