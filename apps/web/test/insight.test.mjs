@@ -537,6 +537,7 @@ for (const [what, material] of [['nobody states', {}], ['is stated to be the def
     const file = path.join(temporaryFolder(), 'tower.json');
     writeFileSync(file, text);
     await dropFile(page, 'tower.json', text);
+    await page.waitForFunction((source) => globalThis.holdfast.bench.robot.base === source, text);
     await settled(page);
     assert.equal(await verdict(page), ask(file).verdict);
     await page.close();
