@@ -41,9 +41,12 @@ class _Sought:
 
     __slots__ = ()
 
+    _held: Any
+
     @property
     def outcome(self) -> Outcome:
-        raise NotImplementedError
+        """FOUND, NONE (proved), NOT_FOUND."""
+        return Outcome(self._held.outcome)
 
     @property
     def is_found(self) -> bool:
@@ -257,11 +260,6 @@ class Order(_Texts, _Sought):
     _held: _core.Order
 
     @property
-    def outcome(self) -> Outcome:
-        """FOUND, NONE (proved), NOT_FOUND."""
-        return Outcome(self._held.outcome)
-
-    @property
     def start(self) -> npt.NDArray[np.int32]:
         """Cells of the modules that are there at first, or are left behind: (n, 3)."""
         return self._held.start
@@ -330,11 +328,6 @@ class Moves(_Texts, _Sought):
     __slots__ = ()
 
     _held: _core.Moves
-
-    @property
-    def outcome(self) -> Outcome:
-        """FOUND, NONE (proved), NOT_FOUND."""
-        return Outcome(self._held.outcome)
 
     @property
     def steps(self) -> list[list[tuple[Cell, Cell, Optional[Cell]]]]:

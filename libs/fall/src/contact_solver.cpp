@@ -80,7 +80,7 @@ class ContactImpulse {
 
 }  // namespace
 
-void apply_impulses(std::vector<Contact>& contacts, double friction, double step_s) {
+void apply_impulses(const std::vector<Contact>& contacts, double friction, double step_s) {
   std::vector<ContactImpulse> impulses;
   impulses.reserve(contacts.size());
   for (const Contact& contact : contacts) {

@@ -10,7 +10,7 @@ namespace holdfast::fall {
 
 /// Gives the bodies of all contacts the impulses with which none comes nearer than its gap within a
 /// step, by Coulomb's law and without restitution: projected Gauss-Seidel iterations.
-void apply_impulses(std::vector<Contact>& contacts, double friction, double step_s);
+void apply_impulses(const std::vector<Contact>& contacts, double friction, double step_s);
 
 /// Takes bodies out of each other, slowly.
 void push_apart(const std::vector<Contact>& contacts);

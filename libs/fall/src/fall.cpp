@@ -34,7 +34,7 @@ void step(std::vector<MovingBody>& bodies, const Scene& scene, const ContactFind
       body.load(vector_of(scene.gravity_mm_s2), kStepSeconds);
     }
   }
-  std::vector<Contact> contacts = finder.find(bodies, kStepSeconds);
+  const std::vector<Contact> contacts = finder.find(bodies, kStepSeconds);
   apply_impulses(contacts, scene.friction, kStepSeconds);
   for (MovingBody& body : bodies) {
     body.advance(kStepSeconds);

@@ -69,11 +69,11 @@ constexpr double kLineUnit = 1e-3;
 }  // namespace
 
 MovingBody::MovingBody(const Body& body, const Scene& scene)
-    : grid_(nodes_from(body, centre_of(body)), scene.pitch_mm),
+    : centre_at_rest_(centre_of(body)),
+      centre_(centre_at_rest_),
+      grid_(nodes_from(body, centre_at_rest_), scene.pitch_mm),
       pushes_(body.pushes),
-      begin_s_(body.begin_s),
-      centre_(centre_of(body)),
-      centre_at_rest_(centre_) {
+      begin_s_(body.begin_s) {
   const double pitch_mm = scene.pitch_mm;
   const std::vector<Vector3d>& nodes = grid_.nodes();
   for (std::size_t i = 0; i < nodes.size(); ++i) {

@@ -77,6 +77,8 @@ class MovingBody {
   /// Turns it on by a small angle about the axis of a vector, rad.
   void turn_by(const Eigen::Vector3d& angle);
 
+  Eigen::Vector3d centre_at_rest_;
+  Eigen::Vector3d centre_;
   NodeGrid grid_;
   std::vector<Eigen::Vector3d> outer_;
   std::vector<Eigen::Vector3d> feet_;
@@ -88,8 +90,6 @@ class MovingBody {
   Eigen::Matrix3d inertia_ = Eigen::Matrix3d::Zero();  ///< In its own frame.
   Eigen::Matrix3d inverse_ = Eigen::Matrix3d::Zero();  ///< In its own frame.
   Eigen::Matrix3d turned_inverse_ = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d centre_at_rest_ = Eigen::Vector3d::Zero();
   Eigen::Quaterniond turn_ = Eigen::Quaterniond::Identity();
   Eigen::Matrix3d rotation_ = Eigen::Matrix3d::Identity();
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();

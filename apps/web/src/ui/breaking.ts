@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 import type { App } from './app';
-import { byId } from './dom';
+import { byId, reportLines } from './dom';
 
 /** What the user touches of a fall: a robot that topples, or breaks and its pieces fall. */
 export class BreakingPanel {
@@ -25,7 +25,7 @@ export class BreakingPanel {
       const [begin, end] = fall === 'topples' ? ['Let it topple', 'Stand it up'] : ['Let it break', 'Put it together again'];
       byId('breaking-title').textContent = fall === 'topples' ? 'The fall' : 'After the break';
       byId('topple').textContent = isToppled ? end : isAsking ? 'Judging what is left … Stop' : begin;
-      byId('breaking-text').textContent = pieces?.breaking.text.replace(/^ +(cascade +)?/gm, '').trim() ?? '';
+      byId('breaking-text').textContent = pieces ? reportLines(pieces.breaking.text, 'cascade') : '';
       byId('fall-shown').hidden = !isToppled;
     }
   }

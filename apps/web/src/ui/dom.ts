@@ -96,3 +96,6 @@ export function icon(name: IconName): SVGElement {
   svg.append(path);
   return svg;
 }
+
+/** Lines of a report under one of its heads, without the head and the blanks before them. */
+export const reportLines = (text: string, head: string) => text.replace(new RegExp(`^ +(${head} +)?`, 'gm'), '').trim();

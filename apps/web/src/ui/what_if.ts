@@ -4,7 +4,7 @@ import { Question } from '../core/question';
 import type { Losses } from '../core/types';
 import { equal, type Cell } from '../model/cell';
 import type { App } from './app';
-import { byId, tell } from './dom';
+import { byId, reportLines, tell } from './dom';
 
 /** How sure it is where strengths scatter, and what follows from the loss of each single part. */
 
@@ -45,7 +45,7 @@ export class Sure {
     try {
       const sure = await this.question.ask((core) => core.reliability(data, own, common, masses));
       if (sure) {
-        byId('sure-text').textContent = sure.text.replace(/^ +(reliability +)?/gm, '').trim();
+        byId('sure-text').textContent = reportLines(sure.text, 'reliability');
         this.app.note = sure.holds === null ? '' : probabilityText(sure.holds, sure.fails!);
       }
     } catch (error) {
@@ -103,7 +103,7 @@ export class LossPanel {
 
   private show({ lose_one: found, text }: Losses): void {
     const { finding, bench: { robot } } = this.app;
-    byId('lose-text').textContent = text.replace(/^ +(lose one +)?/gm, '').trim();
+    byId('lose-text').textContent = reportLines(text, 'lose one');
     const isTried = finding?.answer?.verdict === 'safe';
     byId('lose').textContent = isTried ? 'Back to loads' : 'Try the loss of each part';
     byId('lose').setAttribute('aria-pressed', String(isTried));

@@ -129,19 +129,8 @@ class PieceMaker {
         scene.still.push_back(node(robot_.modules()[i].cell));
       }
     }
-    if (spec_.obstacles.empty()) {
-      return;
-    }
-    const auto [low, high] = bounds();
-    const model::ObstacleIndex obstacles(spec_.obstacles);
-    for (Cell cell = low; cell.x <= high.x; ++cell.x) {
-      for (cell.y = low.y; cell.y <= high.y; ++cell.y) {
-        for (cell.z = low.z; cell.z <= high.z; ++cell.z) {
-          if (obstacles.find(cell) != model::CellIndex::kNone) {
-            scene.still.push_back(node(cell));
-          }
-        }
-      }
+    for (const Cell& cell : obstacle_cells()) {
+      scene.still.push_back(node(cell));
     }
   }
 
@@ -165,6 +154,38 @@ class PieceMaker {
     }
     body.nodes.push_back(node(robot_.modules()[at(module)].cell));
     body.masses.push_back(robot_.mass(at(module)));
+  }
+
+  static void add_box(const Cell& from, const Cell& to, std::set<Cell>& cells) {
+    for (std::int32_t x = from.x; x <= to.x; ++x) {
+      for (std::int32_t y = from.y; y <= to.y; ++y) {
+        for (std::int32_t z = from.z; z <= to.z; ++z) {
+          cells.insert({x, y, z});
+        }
+      }
+    }
+  }
+
+  /// The cells of obstacles near the robot, each once.
+  std::set<Cell> obstacle_cells() const {
+    const auto [low, high] = bounds();
+    std::set<Cell> cells;
+    for (const model::Obstacle& obstacle : spec_.obstacles) {
+      for (const Cell& cell : obstacle.cells) {
+        if (low.x <= cell.x && cell.x <= high.x && low.y <= cell.y && cell.y <= high.y &&
+            low.z <= cell.z && cell.z <= high.z) {
+          cells.insert(cell);
+        }
+      }
+      if (obstacle.cells.empty()) {
+        add_box({std::max(low.x, obstacle.from.x), std::max(low.y, obstacle.from.y),
+                 std::max(low.z, obstacle.from.z)},
+                {std::min(high.x, obstacle.to.x), std::min(high.y, obstacle.to.y),
+                 std::min(high.z, obstacle.to.z)},
+                cells);
+      }
+    }
+    return cells;
   }
 
   std::pair<Cell, Cell> bounds() const {
