@@ -20,7 +20,7 @@ import re
 import subprocess
 import sys
 
-SOURCES = re.compile(r'^(libs|extras|apps|examples|integrations)/')
+SOURCES = re.compile(r'^(libs|extras|apps|examples|integrations)/.*\.cpp$')
 # In a group of files each #include of a source is suspicious.
 WITHOUT = '-bugprone-suspicious-include'
 

@@ -17,8 +17,8 @@ void add_change_options(CLI::App& command, ChangeOptions& options, const std::st
   add("--attach", options.attachments, "A module comes to the cell; its plan is fulfilled");
 }
 
-std::optional<std::vector<Change>> read_changes(
-    const ChangeOptions& options, const std::function<sim::Time(double time)>& ticks) {
+std::vector<Change> read_changes(const ChangeOptions& options,
+                                 const std::function<sim::Time(double time)>& ticks) {
   std::vector<Change> changes;
   const auto read = [&](const char* name, const std::vector<std::string>& texts,
                         Change::Kind kind) {
@@ -26,17 +26,15 @@ std::optional<std::vector<Change>> read_changes(
     for (const std::string& text : texts) {
       const auto place = read_change_place(text, allows_all);
       if (!place) {
-        fmt::print(stderr, "holdfast: {}\n", change_usage(name, text, allows_all));
-        return false;
+        throw UsageError(change_usage(name, text, allows_all));
       }
       changes.push_back({.kind = kind, .at = ticks(place->time), .cell = place->cell});
     }
-    return true;
   };
-  const bool is_read = read("attach", options.attachments, Change::Kind::kAttach) &&
-                       read("plan", options.plans, Change::Kind::kPlan) &&
-                       read("withdraw", options.withdrawals, Change::Kind::kWithdraw);
-  return is_read ? std::optional(std::move(changes)) : std::nullopt;
+  read("attach", options.attachments, Change::Kind::kAttach);
+  read("plan", options.plans, Change::Kind::kPlan);
+  read("withdraw", options.withdrawals, Change::Kind::kWithdraw);
+  return changes;
 }
 
 }  // namespace holdfast::cli

@@ -24,9 +24,9 @@ struct ChangeOptions {
 /// Adds the options; `time` says what times are given in.
 void add_change_options(CLI::App& command, ChangeOptions& options, const std::string& time);
 
-/// Reads the changes; none, and the fault is printed, if a text is no place and time. `ticks`
-/// converts times as given into the robot's.
-std::optional<std::vector<Change>> read_changes(const ChangeOptions& options,
-                                                const std::function<sim::Time(double time)>& ticks);
+/// Reads the changes. Throws a UsageError if a text is no place and time. `ticks` converts times as
+/// given into the robot's.
+std::vector<Change> read_changes(const ChangeOptions& options,
+                                 const std::function<sim::Time(double time)>& ticks);
 
 }  // namespace holdfast::cli

@@ -453,19 +453,15 @@ int run(CheckArguments options) {
   if (options.files.size() > 1 &&
       !(options.csv.empty() && options.figure.path.empty() && options.vtk.empty() &&
         options.html.empty() && options.certificate.empty())) {
-    fmt::print(
-        stderr,
-        "holdfast: --csv, --svg, --vtk, --html and --certificate are for one structure, {} files "
-        "are given\n",
-        options.files.size());
-    return kExitUsage;
+    throw UsageError(
+        fmt::format("--csv, --svg, --vtk, --html and --certificate are for one structure, {} "
+                    "files are given",
+                    options.files.size()));
   }
-  if (complain_of_outputs(options.files, options.outputs())) {
-    return kExitUsage;
-  }
+  refuse_clashes(options.files, options.outputs());
   const std::array others = {options.files.front(), options.json, options.csv, options.figure.path};
-  if (options.writes_series() && complain_of_series(options.vtk, others)) {
-    return kExitUsage;
+  if (options.writes_series()) {
+    refuse_series(options.vtk, others);
   }
   return CheckRun(options).run();
 }
@@ -541,8 +537,7 @@ Command add_check(CLI::App& app) {
   add_quiet(*command, options->is_quiet);
   command->add_flag("--bonded", options->is_bonded,
                     "Treat the ground as glued: supports can neither lift nor tilt");
-  command->add_option("--threads", options->thread_count, "For large robots; 0: all cores")
-      ->check(CLI::Range(0, 64));
+  add_threads(*command, options->thread_count);
   command
       ->add_option("--memory", options->memory_gb,
                    "Most memory for the solver, GB; a robot that needs more is undecided")

@@ -13,6 +13,7 @@
 #include <functional>
 #include <initializer_list>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -82,6 +83,15 @@ inline CLI::Option& add_output(CLI::App& command, const std::string& name, std::
   return *command.add_option(name, path, help)->type_name(type)->group(kOutputs);
 }
 
+/// The option --threads.
+inline void add_threads(CLI::App& command, int& thread_count) {
+  command
+      .add_option("--threads", thread_count,
+                  "Threads; 0: as many as the machine has cores. The answer does not depend on it")
+      ->type_name("N")
+      ->check(CLI::Range(0, 64));
+}
+
 /// The flag -q, --quiet.
 inline void add_quiet(CLI::App& command, bool& is_quiet) {
   command.add_flag("-q,--quiet", is_quiet, "Print errors only; the exit code is the answer")
@@ -128,6 +138,12 @@ inline int fail(const base::Error& error, const std::string& file) {
 
 /// Notes are on standard error already: a text report for the same place does without them.
 TextOptions text_options();
+
+/// What is wrong with a command line that the parser has taken. The program prints it as it does
+/// the parser's own errors, and exits with kExitUsage.
+struct UsageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 /// An output that was asked for and that there is nothing for: a file that is there stays as it
 /// was.

@@ -84,15 +84,12 @@ int run(const ConvertArguments& options) {
   const bool to_binary = options.to.ends_with(".holdfast");
   const auto description = find_description(options.to);
   if (!to_json && !to_binary && !description && !options.to.ends_with(".xml")) {
-    fmt::print(stderr,
-               "holdfast: {}: the ending says the format: expected .json (holdfast JSON), .xml "
-               "(VisibleSim XML), .holdfast (binary), .urdf or .sdf\n",
-               options.to);
-    return kExitUsage;
+    throw UsageError(
+        fmt::format("{}: the ending says the format: expected .json (holdfast JSON), .xml "
+                    "(VisibleSim XML), .holdfast (binary), .urdf or .sdf",
+                    io::one_line(options.to)));
   }
-  if (complain_of_outputs({&options.from, 1}, {{{"the output", options.to}}})) {
-    return kExitUsage;
-  }
+  refuse_clashes({&options.from, 1}, {{{"the output", options.to}}});
   const auto read = read_with_notes(options.from, options.reading);
   if (!read) {
     return fail(read.error(), options.from);

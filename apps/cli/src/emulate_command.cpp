@@ -64,9 +64,7 @@ class EmulateRun {
 
   int run() {
     const std::string inputs[] = {options_.file, image()};
-    if (complain_of_outputs(inputs, options_.outputs())) {
-      return kExitUsage;
-    }
+    refuse_clashes(inputs, options_.outputs());
     note_idle_connections(options_.connections, {options_.json});
     const auto structure = load_with_notes(options_.file, options_.reading);
     if (!structure) {
@@ -89,10 +87,7 @@ class EmulateRun {
 
   int run_with_changes(const Structure& structure) {
     const auto changes = read_changes(options_.changes, microseconds);
-    if (!changes) {
-      return kExitUsage;
-    }
-    const auto changed = with_changes(structure, *changes);
+    const auto changed = with_changes(structure, changes);
     if (!changed) {
       return fail(changed.error(), options_.file);
     }
@@ -113,10 +108,7 @@ class EmulateRun {
 
   int run_with_faults(const Structure& structure) {
     const auto faults = read_faults(options_.faults, structure, microseconds);
-    if (!faults) {
-      return kExitUsage;
-    }
-    emulation_.faults.insert(emulation_.faults.end(), faults->begin(), faults->end());
+    emulation_.faults.insert(emulation_.faults.end(), faults.begin(), faults.end());
     for (const std::string& text : options_.serial) {
       if (const auto code = add_serial(text, structure)) {
         return *code;
@@ -132,13 +124,11 @@ class EmulateRun {
     const std::string place_text = text.substr(0, mark) + "@0";
     const auto place = read_fault_place(place_text, true, structure);
     if (mark == std::string::npos || mark + 1 == text.size() || !place) {
-      fmt::print(stderr, "holdfast: --serial: expected X,Y,Z:FACE=DEVICE, found '{}'\n",
-                 io::one_line(text));
-      return kExitUsage;
+      throw UsageError(
+          fmt::format("--serial: expected X,Y,Z:FACE=DEVICE, found '{}'", io::one_line(text)));
     }
     if (place->module < 0) {
-      fmt::print(stderr, "holdfast: {}\n", no_module("serial", text, place->cell));
-      return kExitUsage;
+      throw UsageError(no_module("serial", text, place->cell));
     }
     const std::string device = text.substr(mark + 1);
     auto channel = open_channel(device, static_cast<std::uint32_t>(emulation_.link.bit_rate));

@@ -33,21 +33,19 @@ void add_fault_options(CLI::App& command, std::vector<FaultOption<Fault>>& optio
   }
 }
 
-/// Reads the faults; none, and the fault is printed, if a text is no place of an existing module
-/// and time. `ticks` converts times as given into the robot's.
+/// Reads the faults. Throws a UsageError if a text is no place of an existing module and time.
+/// `ticks` converts times as given into the robot's.
 template <class Fault>
-std::optional<std::vector<Fault>> read_faults(const std::vector<FaultOption<Fault>>& options,
-                                              const Structure& structure,
-                                              const std::function<sim::Time(double time)>& ticks) {
+std::vector<Fault> read_faults(const std::vector<FaultOption<Fault>>& options,
+                               const Structure& structure,
+                               const std::function<sim::Time(double time)>& ticks) {
   std::vector<Fault> faults;
   for (const FaultOption<Fault>& option : options) {
     for (const std::string& text : option.texts) {
       const auto place = read_fault_place(text, option.has_face, structure);
       if (!place || place->module < 0) {
-        fmt::print(stderr, "holdfast: {}\n",
-                   !place ? fault_usage(option.name, text, option.has_face)
-                          : no_module(option.name, text, place->cell));
-        return std::nullopt;
+        throw UsageError(!place ? fault_usage(option.name, text, option.has_face)
+                                : no_module(option.name, text, place->cell));
       }
       faults.push_back({.kind = option.kind,
                         .at = ticks(place->time),

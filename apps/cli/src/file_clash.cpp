@@ -141,29 +141,26 @@ std::optional<std::string> find_foreign_ending(const Outputs& outputs) {
   return std::nullopt;
 }
 
-bool complain_of_outputs(std::span<const std::string> inputs, const Outputs& outputs) {
+void refuse_clashes(std::span<const std::string> inputs, const Outputs& outputs) {
   auto fault = find_clash(inputs, outputs);
   if (!fault) {
     fault = find_foreign_ending(outputs);
   }
   if (fault) {
-    fmt::print(stderr, "holdfast: {}\n", io::one_line(*fault));
+    throw UsageError(io::one_line(*fault));
   }
-  return fault.has_value();
 }
 
-bool complain_of_series(const std::string& series, std::span<const std::string> others) {
+void refuse_series(const std::string& series, std::span<const std::string> others) {
   if (series == "-") {
-    fmt::print(stderr, "holdfast: --vtk -: a series is several files; expected a name\n");
-    return true;
+    throw UsageError("--vtk -: a series is several files; expected a name");
   }
   const auto clashing = std::ranges::find_if(
       others, [&](const std::string& file) { return is_in_series(file, series); });
   if (clashing != others.end()) {
-    fmt::print(stderr, "holdfast: {}: --vtk {} may write a file of this name\n",
-               io::one_line(*clashing), io::one_line(series));
+    throw UsageError(fmt::format("--vtk {} may write a file of the name {}", io::one_line(series),
+                                 io::one_line(*clashing)));
   }
-  return clashing != others.end();
 }
 
 bool leaves_standard_output(const Outputs& outputs) {

@@ -30,12 +30,12 @@ std::optional<std::string> find_clash(std::span<const std::string> inputs, const
 /// Says what is wrong if the name of an output ends as files of another format do.
 std::optional<std::string> find_foreign_ending(const Outputs& outputs);
 
-/// Prints either as wrong usage; false if there is none.
-bool complain_of_outputs(std::span<const std::string> inputs, const Outputs& outputs);
+/// Throws either as a UsageError.
+void refuse_clashes(std::span<const std::string> inputs, const Outputs& outputs);
 
-/// Prints what is wrong with a series that is to be written, a .pvd file and .vtu files beside it:
-/// it is standard output, or one of the other files may be one of it; false if nothing is.
-bool complain_of_series(const std::string& series, std::span<const std::string> others);
+/// Throws a UsageError if a series, a .pvd file and .vtu files beside it, is to go to standard
+/// output, or if one of the other files may be one of it.
+void refuse_series(const std::string& series, std::span<const std::string> others);
 
 /// Whether the run's text goes to standard output: none of the outputs goes there, as one that does
 /// is all that may be there.

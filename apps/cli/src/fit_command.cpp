@@ -24,9 +24,7 @@ struct FitArguments {
 int run(const FitArguments& options) {
   const Outputs outputs = {{"--json", options.json, FileFormat::kJson},
                            {"--svg", options.figure.path, FileFormat::kFigure}};
-  if (complain_of_outputs({&options.file, 1}, outputs)) {
-    return kExitUsage;
-  }
+  refuse_clashes({&options.file, 1}, outputs);
   const auto report = fit_file(options.file);
   if (!report) {
     return fail(report.error(), options.file);

@@ -18,16 +18,12 @@ struct GenerateArguments {
 
 int run(const GenerateArguments& options) {
   if (options.size < 0) {
-    fmt::print(stderr, "holdfast: the size {} is not allowed: it is 1 or more\n", options.size);
-    return kExitUsage;
+    throw UsageError(fmt::format("expected a size of 1 or more, found {}", options.size));
   }
-  if (complain_of_outputs({}, {{{"--output", options.to, FileFormat::kStructure}}})) {
-    return kExitUsage;
-  }
+  refuse_clashes({}, {{{"--output", options.to, FileFormat::kStructure}}});
   const auto document = generate(options.family, static_cast<std::size_t>(options.size));
   if (!document) {
-    fmt::print(stderr, "holdfast: {}\n", document.error().message);
-    return kExitUsage;
+    throw UsageError(document.error().message);
   }
   if (options.to.ends_with(".holdfast")) {
     const auto structure = io::make_binary(document.value());

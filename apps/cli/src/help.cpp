@@ -309,6 +309,10 @@ std::string usage_error(const CLI::App& app, const CLI::Error& error) {
   if (what.empty()) {
     what = is_extra ? one_too_many(command) : with_value(command, reworded(error.what()));
   }
+  return usage_error(command, what);
+}
+
+std::string usage_error(const CLI::App& command, std::string_view what) {
   return fmt::format("{0}: {1}\nTry '{0} --help'.\n", full_name(command), what);
 }
 

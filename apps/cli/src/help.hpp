@@ -53,6 +53,9 @@ class HelpFormatter : public CLI::Formatter {
 /// asked, and one that says where help is.
 std::string usage_error(const CLI::App& app, const CLI::Error& error);
 
+/// Says so where a command itself finds what is wrong.
+std::string usage_error(const CLI::App& command, std::string_view what);
+
 /// What to say where the first argument is neither an option nor a command.
 std::string unknown_command(const CLI::App& app, std::string_view argument);
 

@@ -159,9 +159,7 @@ int run(const MoveArguments& options) {
       inputs.push_back(more);
     }
   }
-  if (complain_of_outputs(inputs, options.outputs())) {
-    return kExitUsage;
-  }
+  refuse_clashes(inputs, options.outputs());
   const auto start = read(options.start, "the robot", options.reading);
   if (!start) {
     return fail(start.error(), options.start);
@@ -213,11 +211,7 @@ void add_limits(CLI::App& command, MoveArguments& options) {
       ->type_name("S")
       ->check(number_between(0.0, 1e6))
       ->capture_default_str();
-  command
-      .add_option("--threads", options.thread_count,
-                  "Threads; 0: as many as the machine has cores. The answer does not depend on it")
-      ->type_name("N")
-      ->check(CLI::Range(0, 64));
+  add_threads(command, options.thread_count);
   add_quiet(command, options.is_quiet);
 }
 

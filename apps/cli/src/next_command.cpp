@@ -70,9 +70,7 @@ bool write_files(const NextArguments& options, const Structure& structure, const
 }
 
 int run(const NextArguments& options) {
-  if (complain_of_outputs({&options.file, 1}, options.outputs())) {
-    return kExitUsage;
-  }
+  refuse_clashes({&options.file, 1}, options.outputs());
   const auto structure = load_with_notes(options.file, options.reading, options.thread_count);
   if (!structure) {
     return fail(structure.error(), options.file);
@@ -154,7 +152,7 @@ Command add_next(CLI::App& app) {
   add_quiet(*command, options->is_quiet);
   command->add_flag("--bonded", options->is_bonded,
                     "Treat the ground as glued: supports can neither lift nor tilt");
-  command->add_option("--threads", options->thread_count, "0: all cores")->check(CLI::Range(0, 64));
+  add_threads(*command, options->thread_count);
   command->add_option("--memory", options->memory_gb, "Most memory for the solver, GB")
       ->check(number_between(0.01, 1024.0))
       ->capture_default_str();

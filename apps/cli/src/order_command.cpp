@@ -220,14 +220,10 @@ base::Result<PlanFailureAnswer> failures_of(const OrderArguments& options,
 
 int run(const OrderArguments& options) {
   const std::array<std::string, 2> inputs = {options.target, options.start};
-  if (complain_of_outputs({inputs.data(), options.start.empty() ? 1U : 2U}, options.outputs())) {
-    return kExitUsage;
-  }
+  refuse_clashes({inputs.data(), options.start.empty() ? 1U : 2U}, options.outputs());
   if ((options.reach == "surface") != !options.source.empty()) {
-    fmt::print(stderr, "holdfast order: {}\n",
-               options.source.empty() ? "--reach surface requires --source CELL"
-                                      : "--source requires --reach surface");
-    return kExitUsage;
+    throw UsageError(options.source.empty() ? "--reach surface requires --source CELL"
+                                            : "--source requires --reach surface");
   }
   const auto read = read_with_notes(options.target, options.reading);
   if (!read) {
@@ -336,11 +332,7 @@ void add_limits(CLI::App& command, OrderArguments& options) {
       ->type_name("S")
       ->check(number_between(0.0, 1e6))
       ->capture_default_str();
-  command
-      .add_option("--threads", options.thread_count,
-                  "Threads; 0: as many as the machine has cores. The answer does not depend on it")
-      ->type_name("N")
-      ->check(CLI::Range(0, 64));
+  add_threads(command, options.thread_count);
   add_quiet(command, options.is_quiet);
 }
 

@@ -134,7 +134,15 @@ int Program::run(int argc, char** argv) {
   }
   const auto asked =
       std::ranges::find_if(commands_, [](const Command& command) { return command.app->parsed(); });
-  return asked == commands_.end() ? kExitUsage : asked->run();
+  if (asked == commands_.end()) {
+    return kExitUsage;
+  }
+  try {
+    return asked->run();
+  } catch (const UsageError& error) {
+    std::fputs(usage_error(*asked->app, error.what()).c_str(), stderr);
+    return kExitUsage;
+  }
 }
 
 int report_exception() {

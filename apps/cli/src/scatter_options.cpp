@@ -80,16 +80,7 @@ base::Error nothing_scatters() {
 
 int exit_code_of(const ScatterOptions& options,
                  const std::optional<verdict::Reliability>& reliability) {
-  if (options.probability <= 0) {
-    return kExitSafe;
-  }
-  if (!reliability) {
-    return kExitUndecided;
-  }
-  if (reliability->holds_high < options.probability) {
-    return kExitUnsafe;
-  }
-  return reliability->holds_low < options.probability ? kExitUndecided : kExitSafe;
+  return exit_code(verdict::judge_probability(reliability, options.probability));
 }
 
 }  // namespace holdfast::cli

@@ -65,11 +65,6 @@ sim::Time ticks(const sim::LinkModel& link, double time) {
   return static_cast<sim::Time>(std::llround(time * scale));
 }
 
-int usage_error(const std::string& message) {
-  fmt::print(stderr, "holdfast: {}\n", message);
-  return kExitUsage;
-}
-
 /// A trace file and its writer, if asked for.
 template <class Trace>
 struct TraceFile {
@@ -117,9 +112,7 @@ class SimulateRun {
     simulation_.method = method;
     simulation_.seed = options_.seed;
     add_noise();
-    if (complain_of_outputs({&options_.file, 1}, options_.outputs())) {
-      return kExitUsage;
-    }
+    refuse_clashes({&options_.file, 1}, options_.outputs());
     note_idle_connections(options_.connections, {options_.json});
     if (options_.takes_steps || options_.judges_stages) {
       return run_steps();
@@ -178,7 +171,7 @@ class SimulateRun {
 
   int run_next() {
     if (has_happenings()) {
-      return usage_error(
+      throw UsageError(
           "--next goes with none of --kill, --cut, --detach, --plan, --withdraw, --attach, "
           "--trace, --story");
     }
@@ -221,10 +214,10 @@ class SimulateRun {
 
   int run_steps() {
     if (options_.takes_steps && options_.judges_stages) {
-      return usage_error("--steps and --stages do not go together");
+      throw UsageError("--steps and --stages do not go together");
     }
     if (options_.asks_next || has_happenings() || !options_.figure.path.empty()) {
-      return usage_error(
+      throw UsageError(
           "--steps and --stages go with none of --kill, --cut, --detach, --plan, --withdraw, "
           "--attach, --trace, --story, --svg, --next");
     }
@@ -279,10 +272,7 @@ class SimulateRun {
   int run_with_changes(const Structure& structure) {
     const auto changes = read_changes(
         options_.changes, [this](double time) { return ticks(simulation_.link, time); });
-    if (!changes) {
-      return kExitUsage;
-    }
-    const auto changed = with_changes(structure, *changes);
+    const auto changed = with_changes(structure, changes);
     if (!changed) {
       return fail(changed.error(), options_.file);
     }
@@ -297,10 +287,7 @@ class SimulateRun {
   int run_with_faults(const Structure& structure) {
     const auto faults = read_faults(options_.faults, structure,
                                     [this](double time) { return ticks(simulation_.link, time); });
-    if (!faults) {
-      return kExitUsage;
-    }
-    simulation_.faults.insert(simulation_.faults.end(), faults->begin(), faults->end());
+    simulation_.faults.insert(simulation_.faults.end(), faults.begin(), faults.end());
     return simulate_structure(structure);
   }
 
@@ -322,7 +309,7 @@ class SimulateRun {
       return kExitBadInput;
     }
     if (perfetto.trace && story.trace) {
-      return usage_error("--trace and --story: one of them at a time");
+      throw UsageError("--trace and --story: one of them at a time");
     }
     simulation_.trace = perfetto.trace ? static_cast<sim::TraceSink*>(perfetto.trace.get())
                                        : static_cast<sim::TraceSink*>(story.trace.get());

@@ -154,18 +154,18 @@ int run_certificate(const StepsArguments& options) {
 }
 
 /// A series is several files, which must not be the input, nor one another output.
-bool complain_of_steps_series(const StepsArguments& options) {
+void refuse_steps_series(const StepsArguments& options) {
   if (options.vtk.ends_with(".vtu")) {
-    fmt::print(
-        stderr,
-        "holdfast: --vtk {}: the steps are several .vtu files and one list of them, which is to "
-        "be named here; expected a name that ends with .pvd\n",
-        io::one_line(options.vtk));
-    return true;
+    throw UsageError(
+        fmt::format("--vtk {}: the steps are several .vtu files and one list of them, which is to "
+                    "be named here; expected a name that ends with .pvd",
+                    io::one_line(options.vtk)));
   }
   const std::array others = {options.file, options.json, options.csv, options.figure.path,
                              options.html};
-  return !options.vtk.empty() && complain_of_series(options.vtk, others);
+  if (!options.vtk.empty()) {
+    refuse_series(options.vtk, others);
+  }
 }
 
 int run(const StepsArguments& options) {
@@ -173,21 +173,16 @@ int run(const StepsArguments& options) {
     return run_certificate(options);
   }
   if (!options.target.empty()) {
-    fmt::print(stderr, "holdfast: TARGET is what --verify compares a certificate with\n");
-    return kExitUsage;
+    throw UsageError("TARGET is what --verify compares a certificate with");
   }
   const io::FigureOptions& figure = options.figure.options;
   if (options.step.empty() && !options.is_strip &&
       (!figure.view.is_isometric || !figure.has_legend)) {
-    fmt::print(stderr,
-               "holdfast steps: --view and --no-legend require --step or --strip, as curves have "
-               "neither\n");
-    return kExitUsage;
+    throw UsageError("--view and --no-legend require --step or --strip, as curves have neither");
   }
   const std::vector<std::string> inputs = {options.file};
-  if (complain_of_steps_series(options) || complain_of_outputs(inputs, options.outputs())) {
-    return kExitUsage;
-  }
+  refuse_steps_series(options);
+  refuse_clashes(inputs, options.outputs());
   const auto file = load_steps_with_notes(options.file, options.reading);
   if (!file) {
     return fail(file.error(), options.file);
@@ -282,8 +277,7 @@ Command add_steps(CLI::App& app) {
       ->excludes("--until-unsafe")
       ->excludes("--exact");
   add_quiet(*command, options->is_quiet);
-  command->add_option("--threads", options->thread_count, "0: all cores; the answer is the same")
-      ->check(CLI::Range(0, 64));
+  add_threads(*command, options->thread_count);
   return {command,
           [options] { return run(*options); },
           {.examples = {{"steps walk.json", "is every stage safe?"},

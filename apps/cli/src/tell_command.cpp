@@ -21,10 +21,10 @@ struct TellArguments {
   InstrumentOptions options;
 };
 
-int tell_usage(const TellArguments& arguments, const char* expected) {
-  fmt::print(stderr, "holdfast tell: {}: expected {}, found {}\n", arguments.what, expected,
-             arguments.value.empty() ? "nothing" : "'" + io::one_line(arguments.value) + "'");
-  return kExitUsage;
+UsageError tell_usage(const TellArguments& arguments, const char* expected) {
+  return UsageError(
+      fmt::format("{}: expected {}, found {}", arguments.what, expected,
+                  arguments.value.empty() ? "nothing" : "'" + io::one_line(arguments.value) + "'"));
 }
 
 /// The words plan, withdraw, anchor, fixed and free; none, if the value does not fit.
@@ -70,10 +70,13 @@ int run_tell(const TellArguments& arguments) {
   if (arguments.what != "configure") {
     const char* expected = "";
     const auto telling = telling_of(arguments, expected);
-    return telling ? say(arguments, *telling) : tell_usage(arguments, expected);
+    if (!telling) {
+      throw tell_usage(arguments, expected);
+    }
+    return say(arguments, *telling);
   }
   if (arguments.value.empty()) {
-    return tell_usage(arguments, "FILE");
+    throw tell_usage(arguments, "FILE");
   }
   const auto structure = load_with_notes(arguments.value, arguments.reading);
   if (!structure) {

@@ -53,9 +53,7 @@ int show(const std::string& page, const std::string& out, bool stays_closed) {
 }
 
 int run(const ViewArguments& options) {
-  if (complain_of_outputs({&options.file, 1}, {{{"--out", options.out, FileFormat::kHtml}}})) {
-    return kExitUsage;
-  }
+  refuse_clashes({&options.file, 1}, {{{"--out", options.out, FileFormat::kHtml}}});
   const auto structure = load_with_notes(options.file, options.reading);
   if (!structure) {
     return fail(structure.error(), options.file);

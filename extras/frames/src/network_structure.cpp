@@ -270,7 +270,10 @@ double NetworkStructure::used_with(Element element) {
   }
   const double ratio = used();
   growing_.undo();
-  return std::isnan(ratio) ? kNotPossible : ratio;
+  if (std::isnan(ratio)) {
+    return kNotPossible;
+  }
+  return ratio;
 }
 
 /// Adds the element if it is not there, removes it if it is.

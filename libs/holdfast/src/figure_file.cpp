@@ -128,7 +128,7 @@ std::optional<base::Error> find_figure_fault(std::string_view path) {
 }
 
 std::optional<base::Error> write_figure(const std::filesystem::path& path, std::string_view svg) {
-  if (const auto fault = find_figure_fault(path.string())) {
+  if (auto fault = find_figure_fault(path.string())) {
     return fault;
   }
 #ifdef HOLDFAST_RSVG

@@ -60,7 +60,7 @@ void add_releases(const plan::RobotState& before, const model::Step& step,
     pairs.insert(plan::ordered(pair));
   }
   for (const model::CellPair& pair : pairs) {
-    const auto direction = plan::direction_between(before.lattice(), pair[0], pair[1]);
+    const auto direction = model::direction_between(before.lattice(), pair[0], pair[1]);
     words.push_back({.kind = WordKind::kOff,
                      .face = number(direction.value()),
                      .mask = after.released().contains(pair) ? kAlways : kUntilConnected,

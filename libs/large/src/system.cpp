@@ -28,13 +28,6 @@ double largest_of(const Vec& v, std::size_t first) {
   return std::max({std::abs(v[first]), std::abs(v[first + 1]), std::abs(v[first + 2])});
 }
 
-solver::FacetLaw<double> exact_law(const model::Robot& robot,
-                                   const model::LatticeBeam<double>& beam) {
-  return {beam, mechanics::ground_facet(model::beam_section(robot.material()),
-                                        2 * robot.foot_half_width_mm(), 0.0,
-                                        mechanics::ContactLaw::kUnilateral)};
-}
-
 /// (A + A') / 2
 Mat6<double> symmetric_part(const Mat6<double>& block) {
   Mat6<double> result;
@@ -72,7 +65,8 @@ std::unique_ptr<System> System::make(const model::Robot& robot, const Options& o
 System::System(const model::Robot& robot, const Options& options)
     : robot_(robot),
       lattice_beam_(model::beam_section(robot.material()), robot.lattice()),
-      law_(exact_law(robot, lattice_beam_)),
+      law_(lattice_beam_,
+           solver::ground_facet(robot, {.law = mechanics::ContactLaw::kUnilateral, .gamma = 0})),
       beams_(lattice_beam_, robot.lattice(), robot.material().pitch_mm),
       pitch_(robot.material().pitch_mm),
       is_bonded_(options.is_bonded),

@@ -51,7 +51,7 @@ class Grid {
  public:
   Grid(std::span<const Vector3> centres, double width) : width_(width) {
     for (std::size_t i = 0; i < centres.size(); ++i) {
-      entries_.push_back({key(centres[i], {0, 0, 0}), i});
+      entries_.emplace_back(key(centres[i], {0, 0, 0}), i);
     }
     std::ranges::sort(entries_);
   }
@@ -91,7 +91,6 @@ class Grid {
 
 Bodies::Bodies(const model::Robot& robot, std::span<const model::Obstacle> obstacles)
     : robot_(robot),
-      shape_(Shape::kCube),
       pitch_(robot.material().pitch_mm),
       obstacles_(obstacles.begin(), obstacles.end()),
       obstacle_index_(obstacles_) {

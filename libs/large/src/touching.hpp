@@ -51,7 +51,7 @@ class Bodies {
   Vector3 centre(std::size_t module, const mechanics::Pose& pose) const;
 
   const model::Robot& robot_;
-  Shape shape_;
+  Shape shape_ = Shape::kCube;
   double pitch_;
   std::vector<model::Obstacle> obstacles_;
   model::ObstacleIndex obstacle_index_;

@@ -53,17 +53,6 @@ std::optional<std::string> find_double_cell(const RobotSpec& spec, CellIndex& in
   return std::nullopt;
 }
 
-/// The direction of the second cell from the first, if they are neighbours.
-std::optional<base::Direction> direction_between(const base::Lattice& lattice,
-                                                 const CellPair& pair) {
-  for (const base::Direction direction : base::directions(lattice)) {
-    if (base::neighbour(lattice, pair[0], direction) == pair[1]) {
-      return direction;
-    }
-  }
-  return std::nullopt;
-}
-
 std::array<double, 3> gravity_of(const RobotSpec& spec) {
   return spec.gravity_m_s2.value_or(std::array<double, 3>{0, 0, -spec.material.gravity_m_s2});
 }
@@ -86,6 +75,16 @@ Loads::Load carried_load(const CarriedMass& carried, const std::array<double, 3>
 }
 
 }  // namespace
+
+std::optional<base::Direction> direction_between(const base::Lattice& lattice, const base::Cell& a,
+                                                 const base::Cell& b) {
+  for (const base::Direction direction : base::directions(lattice)) {
+    if (base::neighbour(lattice, a, direction) == b) {
+      return direction;
+    }
+  }
+  return std::nullopt;
+}
 
 ModuleKind default_kind(const Material& material, const base::Lattice& lattice) {
   ModuleKind kind{.mass_kg = material.mass_kg};
@@ -243,7 +242,7 @@ std::optional<std::string> Robot::release(std::span<const CellPair> pairs, const
                                           host::Team& team) {
   neighbours_ = connected_;
   for (const CellPair& pair : pairs) {
-    const auto direction = direction_between(lattice_, pair);
+    const auto direction = direction_between(lattice_, pair[0], pair[1]);
     const std::int32_t a = index.find(pair[0]);
     const std::int32_t b = index.find(pair[1]);
     if (!direction || a == CellIndex::kNone || b == CellIndex::kNone) {
@@ -340,7 +339,7 @@ std::optional<std::string> Robot::take_kinds(const RobotSpec& spec, const CellIn
 std::optional<std::string> Robot::take_own_connectors(const RobotSpec& spec,
                                                       const CellIndex& index) {
   for (const OwnConnector& own : spec.own_connectors) {
-    const auto direction = direction_between(lattice_, own.between);
+    const auto direction = direction_between(lattice_, own.between[0], own.between[1]);
     const std::int32_t a = index.find(own.between[0]);
     const std::int32_t b = index.find(own.between[1]);
     if (!direction || a == CellIndex::kNone || b == CellIndex::kNone) {

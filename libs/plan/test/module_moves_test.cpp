@@ -40,7 +40,7 @@ std::set<Cell> tried_ends(const RobotState& robot, const Cell& from) {
   for (const Cell& to : test::cells_near(robot.lattice(), from)) {
     model::Step step = test::move(from, to);
     bool can = find_transition(robot, step).has_value();
-    const bool is_turn = !direction_between(robot.lattice(), from, to);
+    const bool is_turn = !model::direction_between(robot.lattice(), from, to);
     for (const base::Direction direction : base::directions(robot.lattice())) {
       step.moves.front().carrier = base::neighbour(robot.lattice(), from, direction);
       can = can || (is_turn && find_transition(robot, step).has_value());
@@ -96,7 +96,8 @@ TEST(ModuleMoves, leave_out_what_a_rule_bars) {
       for (const Cell& cell : ends_of(moves_of(robot, module, {}))) {
         // A turn also needs the cell that it comes through.
         const bool is_next =
-            direction_between(spec.lattice, robot.module(module).cell, cell) && box.contains(cell);
+            model::direction_between(spec.lattice, robot.module(module).cell, cell) &&
+            box.contains(cell);
         EXPECT_TRUE(!is_next || boxed.contains(cell)) << seed;
       }
       EXPECT_TRUE(std::ranges::all_of(boxed, [&](const Cell& cell) { return box.contains(cell); }));

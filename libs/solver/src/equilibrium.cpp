@@ -111,11 +111,10 @@ std::optional<Equilibrium> slid(LinearSystem& system, const SlidingContact& sear
 void take_states(LinearSystem& system, const Equilibrium& settled) {
   const std::vector<mechanics::ContactState>& contact = settled.contact;
   constexpr double kWeakSprings = 1e-6;
-  const auto is_stuck = [](const auto& state) { return state == mechanics::kStuck; };
-  const bool is_known = std::ranges::all_of(system.facets(), [&](const FacetState& facet) {
-    return is_stuck(facet.state) && facet.is_held;
+  const bool is_known = std::ranges::all_of(system.facets(), [](const FacetState& facet) {
+    return facet.state == mechanics::kStuck && facet.is_held;
   });
-  const bool is_all_stuck = std::ranges::all_of(contact, is_stuck);
+  const bool is_all_stuck = are_all_stuck(settled);
   if (is_known && is_all_stuck && settled.slip.empty() && system.report().solve_count > 0) {
     return;
   }
@@ -141,6 +140,11 @@ void Equilibrium::begin_with(const Equilibrium& earlier) {
   attempts.insert(attempts.begin(), earlier.attempts.begin(), earlier.attempts.end());
   steps += earlier.steps;
   iteration_count += earlier.iteration_count;
+}
+
+bool are_all_stuck(const Equilibrium& equilibrium) {
+  return std::ranges::all_of(equilibrium.contact,
+                             [](const auto& state) { return state == mechanics::kStuck; });
 }
 
 mechanics::ContactState contact_of(const model::Robot& robot, const Equilibrium& equilibrium,

@@ -20,11 +20,14 @@ LinearSystem::LinearSystem(const model::Robot& robot)
   }
 }
 
+mechanics::GroundFacet<double> ground_facet(const model::Robot& robot,
+                                            const ContactOptions& contact) {
+  return mechanics::ground_facet(model::beam_section(robot.material()),
+                                 2 * robot.foot_half_width_mm(), contact.gamma, contact.law);
+}
+
 void LinearSystem::set_law(const ContactOptions& contact) {
-  const model::Material& material = robot_.material();
-  law_ = {beam_,
-          mechanics::ground_facet(model::beam_section(material), 2 * robot_.foot_half_width_mm(),
-                                  contact.gamma, contact.law)};
+  law_ = {beam_, ground_facet(robot_, contact)};
   for (FacetState& facet : facets_) {
     facet.state = {};
     facet.is_held = true;

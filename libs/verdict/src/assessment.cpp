@@ -137,7 +137,8 @@ bool stands_by_paper(const Assessment& assessment) {
 }
 
 bool has_pulling_facets(const Situation& here, const Equilibrium& equilibrium) {
-  return !here.is_on_flat_floor && host::any(here.robot.ranks(), !are_all_stuck(equilibrium));
+  return !here.is_on_flat_floor &&
+         host::any(here.robot.ranks(), !solver::are_all_stuck(equilibrium));
 }
 
 /// The paper's law's further solutions, and the exact law's answer where there are any, or where
@@ -196,7 +197,8 @@ std::vector<Equilibrium> let_slip(const Situation& here, solver::EquilibriumSolv
   if (!do_hold(here, slid)) {
     return {};
   }
-  if (!here.is_on_flat_floor && !is_exact_law && !std::ranges::all_of(slid, are_all_stuck)) {
+  if (!here.is_on_flat_floor && !is_exact_law &&
+      !std::ranges::all_of(slid, solver::are_all_stuck)) {
     const auto exact = slid_by_exact_law(here, solver);
     if (!do_hold(here, exact)) {
       return {};

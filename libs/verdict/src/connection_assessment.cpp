@@ -324,6 +324,24 @@ void assess_connections(const model::Robot& robot, int thread_count, Assessment&
                            [&](std::size_t i) { return assessment.connections[i].load_ratio; });
 }
 
+std::optional<OpenGaps> find_open_gaps(const model::Robot& robot, std::span<const double> gap_mm) {
+  OpenGaps gaps;
+  double share_max = 0;
+  for (std::size_t i = 0; i < gap_mm.size(); ++i) {
+    const double limit = robot.connector(robot.connections()[i]).gap_limit_mm;
+    gaps.count += gap_mm[i] > limit ? 1 : 0;
+    if (gap_mm[i] / limit > share_max) {
+      share_max = gap_mm[i] / limit;
+      gaps.worst = i;
+      gaps.gap_mm = gap_mm[i];
+      gaps.limit_mm = limit;
+      gaps.ends = model::ends(robot, i);
+    }
+  }
+  gaps = widest_of_all(robot.ranks(), gaps);
+  return gaps.count > 0 ? std::optional(gaps) : std::nullopt;
+}
+
 std::optional<OpenGaps> find_open_gaps(const model::Robot& robot, const Equilibrium& equilibrium) {
   const bool is_limited = std::ranges::any_of(
       robot.connectors(), [](const auto& law) { return std::isfinite(law.gap_limit_mm); });
@@ -331,23 +349,12 @@ std::optional<OpenGaps> find_open_gaps(const model::Robot& robot, const Equilibr
     return std::nullopt;
   }
   const ConnectionLaws laws(robot);
-  OpenGaps gaps;
-  double share_max = 0;
-  for (std::size_t i = 0; i < robot.connections().size(); ++i) {
-    const model::Connection& pair = robot.connections()[i];
-    const double limit = robot.connector(pair).gap_limit_mm;
-    const double gap = laws.gap_mm(pair, equilibrium.displacement, equilibrium.displacement_low);
-    gaps.count += gap > limit ? 1 : 0;
-    if (gap / limit > share_max) {
-      share_max = gap / limit;
-      gaps.worst = i;
-      gaps.gap_mm = gap;
-      gaps.limit_mm = limit;
-      gaps.ends = model::ends(robot, i);
-    }
+  std::vector<double> gap_mm;
+  gap_mm.reserve(robot.connections().size());
+  for (const model::Connection& pair : robot.connections()) {
+    gap_mm.push_back(laws.gap_mm(pair, equilibrium.displacement, equilibrium.displacement_low));
   }
-  gaps = widest_of_all(robot.ranks(), gaps);
-  return gaps.count > 0 ? std::optional(gaps) : std::nullopt;
+  return find_open_gaps(robot, gap_mm);
 }
 
 }  // namespace holdfast::verdict

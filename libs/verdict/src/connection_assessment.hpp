@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "situation.hpp"
 
@@ -35,7 +36,10 @@ LoadRange assess_loads(const Situation& here, const solver::EquilibriumOptions& 
 /// be called after assess_loads().
 void assess_connections(const model::Robot& robot, int thread_count, Assessment& assessment);
 
-/// The gaps that are too wide; none if no connection has a limit, or none is exceeded.
+/// Says which gaps, in mm by connection, are too wide; none if none is.
+std::optional<OpenGaps> find_open_gaps(const model::Robot& robot, std::span<const double> gap_mm);
+
+/// Finds the gaps in an equilibrium, and which are too wide; none if no connection has a limit.
 std::optional<OpenGaps> find_open_gaps(const model::Robot& robot,
                                        const solver::Equilibrium& equilibrium);
 

@@ -132,28 +132,6 @@ void take_connections(const model::Robot& robot, const State& state, Assessment&
   }
 }
 
-/// Connections that open beyond what contacts of power and data tolerate.
-void take_gaps(const model::Robot& robot, const State& state, Assessment& assessment) {
-  assessment.gaps_mm = state.gap_mm;
-  assessment.gaps.reset();
-  OpenGaps gaps;
-  double share_max = 0;
-  for (std::size_t i = 0; i < state.gap_mm.size(); ++i) {
-    const double limit = robot.connector(robot.connections()[i]).gap_limit_mm;
-    gaps.count += state.gap_mm[i] > limit ? 1 : 0;
-    if (state.gap_mm[i] / limit > share_max) {
-      share_max = state.gap_mm[i] / limit;
-      gaps.worst = i;
-      gaps.gap_mm = state.gap_mm[i];
-      gaps.limit_mm = limit;
-    }
-  }
-  if (gaps.count > 0) {
-    gaps.ends = model::ends(robot, gaps.worst);
-    assessment.gaps = gaps;
-  }
-}
-
 /// Displacements, contact states and the forces of facets.
 void take_equilibrium(const State& state, Assessment& assessment) {
   solver::Equilibrium& equilibrium = assessment.equilibrium;
@@ -249,7 +227,8 @@ Deformed assess_deformed(const model::Robot& robot, Assessment linear,
   }
   take_equilibrium(state, assessment);
   take_connections(robot, state, assessment);
-  take_gaps(robot, state, assessment);
+  assessment.gaps_mm = state.gap_mm;
+  assessment.gaps = find_open_gaps(robot, state.gap_mm);
   const std::vector<Happening> all = happenings(robot, path, assessment);
   Happening decision = decision_of(robot, path, all, assessment);
   assessment.verdict = decision.verdict;
@@ -283,7 +262,8 @@ Assessment assess_state(const model::Robot& robot, const State& state, bool is_s
   assessment.contact_model = is_bonded ? ContactModel::kBonded : ContactModel::kUnilateral;
   take_equilibrium(state, assessment);
   take_connections(robot, state, assessment);
-  take_gaps(robot, state, assessment);
+  assessment.gaps_mm = state.gap_mm;
+  assessment.gaps = find_open_gaps(robot, state.gap_mm);
   assessment.verdict = !is_stable                   ? Verdict::kUnstable
                        : !assessment.broken.empty() ? Verdict::kOverload
                                                     : Verdict::kSafe;

@@ -404,4 +404,17 @@ std::optional<Reliability> find_reliability(const Assessment& assessment,
   return found;
 }
 
+Verdict judge_probability(const std::optional<Reliability>& sure, double asked) {
+  if (asked <= 0) {
+    return Verdict::kSafe;
+  }
+  if (!sure) {
+    return Verdict::kUndecided;
+  }
+  if (sure->holds_high < asked) {
+    return Verdict::kOverload;
+  }
+  return sure->holds_low < asked ? Verdict::kUndecided : Verdict::kSafe;
+}
+
 }  // namespace holdfast::verdict

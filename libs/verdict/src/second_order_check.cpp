@@ -44,9 +44,8 @@ class Beams {
  public:
   explicit Beams(const model::Robot& robot)
       : linear_(model::beam_section(robot.material()), robot.lattice()),
-        facet_(mechanics::ground_facet(model::beam_section(robot.material()),
-                                       2 * robot.foot_half_width_mm(), 0.0,
-                                       mechanics::ContactLaw::kUnilateral)),
+        facet_(
+            solver::ground_facet(robot, {.law = mechanics::ContactLaw::kUnilateral, .gamma = 0})),
         large_(linear_, robot.lattice(), robot.material().pitch_mm) {}
 
   Vec6<double> first(base::Direction direction, const Vec6<double>& p,
@@ -163,7 +162,7 @@ std::optional<solver::Equilibrium> exact_equilibrium(const Assessment& assessmen
                                                      solver::EquilibriumSolver& solver,
                                                      double gamma) {
   const solver::Equilibrium& found = assessment.equilibrium;
-  if (are_all_stuck(found) || !found.slip.empty() ||
+  if (solver::are_all_stuck(found) || !found.slip.empty() ||
       found.law == mechanics::ContactLaw::kUnilateral ||
       solver.prepare(mechanics::ContactLaw::kUnilateral) == solver::Method::kMultigrid) {
     return std::nullopt;

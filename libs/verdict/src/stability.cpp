@@ -273,11 +273,6 @@ limit::RigidStability rigid_stability(const Situation& here, const RigidBody& bo
   return {.answer = limit::RigidAnswer::kHolds};
 }
 
-bool are_all_stuck(const Equilibrium& equilibrium) {
-  return std::ranges::all_of(equilibrium.contact,
-                             [](const auto& state) { return state == mechanics::kStuck; });
-}
-
 ModelStability model_stability(const Situation& here, const Equilibrium& equilibrium) {
   const bool is_settled = equilibrium.outcome == solver::Outcome::kSettled;
   return {.is_stable = is_settled && (here.rule == StabilityRule::kHeld ||

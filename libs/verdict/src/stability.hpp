@@ -16,9 +16,6 @@ namespace holdfast::verdict {
 limit::RigidStability rigid_stability(const Situation& here, const RigidBody& body,
                                       bool has_figures);
 
-/// Whether all facets that touch something stick; of a part of a robot, all of its own.
-bool are_all_stuck(const solver::Equilibrium& equilibrium);
-
 /// Decides by Sec. III-C: stable if a facet presses all over, or three pressing corners are not on
 /// one line.
 ModelStability model_stability(const Situation& here, const solver::Equilibrium& equilibrium);

@@ -52,7 +52,7 @@ std::uint8_t Deflation::place() {
   }
   const auto worth = [&](std::size_t i) { return uses(i) ? time_[i] + now_ : time_[i]; };
   std::uint8_t least = 0;
-  for (std::uint8_t i = 1; i < time_.size(); ++i) {
+  for (std::uint8_t i = 1; i < wire::kKeptMax; ++i) {
     least = worth(i) < worth(least) ? i : least;
   }
   time_[least] = ++now_;

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <utility>
 
@@ -19,10 +18,10 @@ void take_probability(const std::optional<verdict::Reliability>& sure, double as
   if (sure) {
     trial.failures.probability_holds = sure->holds;
   }
-  if (asked > 0 && (!sure || sure->holds_low < asked)) {
-    const bool is_certain = sure && sure->holds_high < asked;
+  const Verdict is_met = verdict::judge_probability(sure, asked);
+  if (is_met != Verdict::kSafe) {
     trial.failures.is_improbable = true;
-    trial.verdict = is_certain ? Verdict::kOverload : Verdict::kUndecided;
+    trial.verdict = is_met;
   }
 }
 
@@ -72,12 +71,8 @@ class NextWalk {
 
 /// Puts safe places first, as plan::sort_candidates() does; those of one verdict stay in order.
 void sort_by_verdict(std::vector<Trial>& trials) {
-  const auto rank = [](const Trial& trial) {
-    constexpr std::array kOrder = {Verdict::kSafe, Verdict::kUndecided, Verdict::kOverload,
-                                   Verdict::kUnstable};
-    return std::ranges::find(kOrder, trial.verdict) - kOrder.begin();
-  };
-  std::ranges::stable_sort(trials, {}, rank);
+  std::ranges::stable_sort(trials, {},
+                           [](const Trial& trial) { return verdict::severity(trial.verdict); });
 }
 
 }  // namespace

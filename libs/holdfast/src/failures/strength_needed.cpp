@@ -24,8 +24,8 @@ constexpr double kRatioError = 1e-6;
 /// Searches with one factor after the other.
 class Bottleneck {
  public:
-  Bottleneck(const io::Document& target, const OrderRequest& request)
-      : target_(target), request_(request), begin_(std::chrono::steady_clock::now()) {
+  Bottleneck(const io::Document& target, OrderRequest request)
+      : target_(target), request_(std::move(request)), begin_(std::chrono::steady_clock::now()) {
     request_.is_exact = true;  // The largest load ratio of the way is needed, not a bound.
     request_.help_seconds_max = 0;
   }

@@ -36,7 +36,7 @@ class SeriesFiles {
                                  const std::function<void(std::ostream&)>& write) {
     std::string name = path_.stem().string() + "_" + std::to_string(time);
     name += (part_count > 1 ? "_" + std::to_string(part) : "") + ".vtu";
-    if (const auto error = write_file(path_.parent_path() / name, write)) {
+    if (auto error = write_file(path_.parent_path() / name, write)) {
       return error;
     }
     files_.push_back({.time = time, .part = part, .name = std::move(name)});

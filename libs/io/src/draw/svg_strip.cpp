@@ -27,9 +27,9 @@ struct Rows {
   double frame_height;  ///< Without the caption.
 
   ScreenPoint corner(std::size_t frame) const {
-    return {
-        kGap + static_cast<double>(frame % column_count) * (frame_width + kGap),
-        kTitleHeight + static_cast<double>(frame / column_count) * (frame_height + kCaptionHeight)};
+    const std::size_t row = frame / column_count;
+    return {kGap + static_cast<double>(frame % column_count) * (frame_width + kGap),
+            kTitleHeight + static_cast<double>(row) * (frame_height + kCaptionHeight)};
   }
 };
 

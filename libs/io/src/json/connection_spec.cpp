@@ -73,7 +73,7 @@ class NamedPairs {
             place.pointer());
       }
     }
-    if (!plan::direction_between(lattice_, pair[0], pair[1])) {
+    if (!model::direction_between(lattice_, pair[0], pair[1])) {
       return base::bad_input(
           fmt::format("{}: expected two modules whose faces touch, found two that do not", text),
           place.pointer());
@@ -126,7 +126,7 @@ void add_laws(const Document& document, const std::vector<model::ModuleKind>& ki
       continue;
     }
     const auto direction =
-        base::at(base::index(*plan::direction_between(extension.lattice, between[0], between[1])));
+        base::at(base::index(*model::direction_between(extension.lattice, between[0], between[1])));
     model::ConnectorLaw law = model::weaker(kind_at(between[0]).connectors[direction],
                                             kind_at(between[1]).connectors[direction ^ 1U]);
     apply(connectors, extension.lattice, direction, law);

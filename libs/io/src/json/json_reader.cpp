@@ -369,7 +369,7 @@ template <class Entry>
 void JsonReader::add_shape(const Json& value, const JsonPlace& place, std::size_t step,
                            std::vector<Entry>& list) {
   OwnParameters own{step, 0, {}, {}};
-  Entry one = entry<Entry>(value, place, own);
+  auto one = entry<Entry>(value, place, own);
   if (reading_.has_failed()) {
     return;
   }

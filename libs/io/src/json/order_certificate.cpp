@@ -72,7 +72,7 @@ class CertificateReader {
 
 std::string CertificateReader::choice(const char* key, const std::vector<std::string>& names) {
   const Json& value = at(key);
-  const std::string name = value.is_string() ? value.get<std::string>() : "";
+  std::string name = value.is_string() ? value.get<std::string>() : "";
   if (std::ranges::find(names, name) == names.end()) {
     fail(key, fmt::format("{}, found {}", fmt::join(names, " or "),
                           value.is_string() ? excerpt(name) : value.type_name()));

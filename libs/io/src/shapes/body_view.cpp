@@ -49,13 +49,14 @@ std::vector<SeenFace> disc_faces(const ViewAxes& axes) {
   if (std::abs(axes.eye[0]) + std::abs(axes.eye[2]) > kEdgeOn) {
     SeenFace rim = {.normal = {1, 0, 0}, .corners = {}, .direction = {}};
     constexpr int kHalf = kDiscCorners / 2;
+    constexpr int kQuarter = kHalf / 2;
     // The eye sees the rim a quarter of the circle on either side of its own direction.
     const double middle = std::atan2(axes.eye[2], axes.eye[0]) * kHalf / std::numbers::pi;
     for (int i = 0; i <= kHalf; ++i) {
-      rim.corners.push_back(axes.seen_at(disc_corner(middle + i - kHalf / 2, near)));
+      rim.corners.push_back(axes.seen_at(disc_corner(middle + i - kQuarter, near)));
     }
     for (int i = kHalf; i >= 0; --i) {
-      rim.corners.push_back(axes.seen_at(disc_corner(middle + i - kHalf / 2, -near)));
+      rim.corners.push_back(axes.seen_at(disc_corner(middle + i - kQuarter, -near)));
     }
     faces.push_back(std::move(rim));
   }

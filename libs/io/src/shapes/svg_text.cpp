@@ -213,12 +213,12 @@ std::string finished(std::string svg, const FigureOptions& figure) {
     at += kBegin.size();
     const std::size_t size = svg.find('"', at) - at;
     if (size == 6) {
-      const unsigned long color = std::stoul(svg.substr(at, size), nullptr, 16);
-      const unsigned long red = color >> 16U;
-      const unsigned long green = color >> 8U & 0xffU;
-      const unsigned long blue = color & 0xffU;
+      const std::size_t color = std::stoul(svg.substr(at, size), nullptr, 16);
+      const std::size_t red = color >> 16U;
+      const std::size_t green = color >> 8U & 0xffU;
+      const std::size_t blue = color & 0xffU;
       // The weights of Rec. 601, in integers.
-      const unsigned long grey = (299 * red + 587 * green + 114 * blue + 500) / 1000;
+      const std::size_t grey = (299 * red + 587 * green + 114 * blue + 500) / 1000;
       svg.replace(at, size, fmt::format("{0:02x}{0:02x}{0:02x}", grey));
     }
   }

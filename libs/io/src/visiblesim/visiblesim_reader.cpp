@@ -300,7 +300,7 @@ base::Result<ReadDocument> read_visiblesim(std::string_view text, const ReadOpti
   reading.parse(tree);
   if (!reading.has_failed()) {
     spell_as_known(tree);
-    const pugi::xml_node root = only_child(reading, tree, kRootElement);
+    const pugi::xml_node root = only_child(reading, tree.root(), kRootElement);
     if (root) {
       expect_nothing_beside(reading, tree);
     }

@@ -50,7 +50,7 @@ void keep_hull(std::vector<Plane::Corner>& corners) {
 }
 
 /// What distinguishes planes, in steps far below any facet and far above rounding.
-std::array<long long, 5> key(const ContactFacet& facet) {
+std::array<std::int64_t, 5> key(const ContactFacet& facet) {
   constexpr double kSteps = 1e6;
   const Vector3d normal = vector(facet.frame[2]);
   return {std::llround(normal[0] * kSteps), std::llround(normal[1] * kSteps),
@@ -63,7 +63,7 @@ std::array<long long, 5> key(const ContactFacet& facet) {
 
 std::vector<ContactPoint> contact_points(std::span<const ContactFacet> facets,
                                          const Vector3d& centre_of_mass) {
-  std::map<std::array<long long, 5>, Plane> planes;
+  std::map<std::array<std::int64_t, 5>, Plane> planes;
   for (const ContactFacet& facet : facets) {
     const Vector3d x = vector(facet.frame[0]);
     const Vector3d y = vector(facet.frame[1]);

@@ -76,9 +76,7 @@ std::shared_ptr<Adjoint> find_adjoint(StuckCore& core, const model::Robot& targe
 
 ThreeVectors facet_loads(const model::Robot& target, const model::LatticeBeam<double>& beam,
                          const model::Facet& facet) {
-  const auto law = mechanics::ground_facet<double>(beam.stiffness(), target.material().pitch_mm,
-                                                   2 * target.foot_half_width_mm(), 0,
-                                                   mechanics::ContactLaw::kRegularised);
+  const auto law = solver::ground_facet(target, {.gamma = 0});
   ThreeVectors loads{};
   for (int k = 0; k < 6; ++k) {
     const auto force =

@@ -154,10 +154,8 @@ verdict::MovedMass EnergyBound::moved_mass() const {
 
 /// The force on a stuck facet whose module moves by u, in the facet's middle.
 EnergyBound::Vec EnergyBound::trial_force(const model::Facet& facet, const Vec& u) const {
-  const auto law = mechanics::ground_facet<double>(beam_.stiffness(), target_.material().pitch_mm,
-                                                   2 * target_.foot_half_width_mm(), 0,
-                                                   mechanics::ContactLaw::kRegularised);
-  return mechanics::trial_force(law, beam_.to_local(facet.direction, u));
+  return mechanics::trial_force(solver::ground_facet(target_, {.gamma = 0}),
+                                beam_.to_local(facet.direction, u));
 }
 
 /// What |s - h w| / 2 may be before the facet tilts.
@@ -303,9 +301,7 @@ void EnergyBound::forget_nearby(const std::vector<Element>& elements) {
 
 bool EnergyBound::begin(const std::vector<Element>& elements, const verdict::Assessment& solved,
                         const SectionResponse* section) {
-  const bool is_stuck =
-      std::ranges::all_of(solved.equilibrium.contact,
-                          [](const ContactState& state) { return state == mechanics::kStuck; });
+  const bool is_stuck = solver::are_all_stuck(solved.equilibrium);
   const bool is_known = solved.verdict == verdict::Verdict::kSafe ||
                         (use_ == Use::kTrying && solved.verdict == verdict::Verdict::kOverload);
   if (!is_known || !is_stuck || solved.several ||
@@ -483,7 +479,7 @@ double EnergyBound::strain_by_adjoint(std::size_t index) {
     const double slack = -known->force[0] * b - std::abs(torque);
     for (const double sign : {1.0, -1.0}) {
       const double error = known->error({b, sign * x, sign * y}, energy_error());
-      largest = error < slack ? std::max(largest, error / slack) : kUnknown;
+      largest = std::max(largest, error < slack ? error / slack : kUnknown);
     }
   };
   if (known) {

@@ -114,10 +114,11 @@ bool LoadSpread::factor(SpreadPart& part) const {
     }
   }
   auto factors = equations.factor();
-  if (factors) {
-    part.factor = *std::move(factors);
+  if (!factors) {
+    return false;
   }
-  return factors.has_value();
+  part.factor = *std::move(factors);
+  return true;
 }
 
 void LoadSpread::forget_places(const std::vector<std::size_t>& modules) {

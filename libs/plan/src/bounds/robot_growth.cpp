@@ -30,7 +30,7 @@ std::vector<std::size_t> supports_and(const model::Robot& target, const ElementS
 }  // namespace
 
 RobotGrowth::RobotGrowth(const model::RobotSpec& spec, const model::Robot& target,
-                         const ElementSet& core, ReachRule rule, int thread_count)
+                         const ElementSet& core, const ReachRule& rule, int thread_count)
     : spec_(spec),
       target_(target),
       core_(core),

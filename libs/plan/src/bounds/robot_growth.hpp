@@ -27,7 +27,7 @@ class RobotGrowth final : public GrowingStructure {
   /// `target` is the robot of `spec`, all of whose modules exist. Modules of `core` are in all
   /// states. Keeps references to all three.
   RobotGrowth(const model::RobotSpec& spec, const model::Robot& target, const ElementSet& core,
-              ReachRule rule, int thread_count);
+              const ReachRule& rule, int thread_count);
 
   std::size_t element_count() const override { return spec_.existing.size(); }
 

@@ -46,7 +46,7 @@ std::vector<BoundedCandidates::Place> BoundedCandidates::judge(
   std::vector<std::pair<std::size_t, std::optional<double>>> waiting;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     RigidLook::Answer look = look_.at(cells[i]);
-    places[i].candidate = std::move(look.decided);
+    places[i].candidate = look.decided;
     if (look.site) {
       open.push_back(cells[i]);
       waiting.emplace_back(i, look.margin_mm);

@@ -202,7 +202,7 @@ std::optional<CandidateJudge::Waiting> CandidateJudge::look_at(
     const base::Cell& cell, std::optional<Candidate>& judged) const {
   RigidLook::Answer look = look_.at(cell);
   if (!look.site) {
-    judged = std::move(look.decided);
+    judged = look.decided;
     return std::nullopt;
   }
   auto grown = begins_stuck_ ? contact_->stuck(*look.site) : settled(*look.site);

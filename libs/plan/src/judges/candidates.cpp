@@ -15,7 +15,6 @@
 #include "judges/candidate_judge.hpp"
 #include "judges/robot_symmetry.hpp"
 #include "patience.hpp"
-#include "severity.hpp"
 
 namespace holdfast::plan {
 namespace {
@@ -61,7 +60,7 @@ double rounded(std::optional<double> value, double otherwise) {
 
 auto key_of(const Candidate& candidate) {
   const Judgement& judgement = candidate.judgement;
-  return std::tuple(severity(judgement.verdict), rounded(judgement.load_ratio_max, 0),
+  return std::tuple(verdict::severity(judgement.verdict), rounded(judgement.load_ratio_max, 0),
                     -rounded(judgement.margin_mm, 0), candidate.cell);
 }
 

@@ -20,7 +20,6 @@
 #include "judges/lost_part.hpp"
 #include "part_of.hpp"
 #include "patience.hpp"
-#include "severity.hpp"
 
 namespace holdfast::plan {
 namespace {
@@ -241,7 +240,7 @@ class LossSearch {
       const auto robot = model::Robot::create(spec, options_.equilibrium.thread_count);
       const Judgement judgement =
           robot ? judge_piece(robot.value(), pieces.size() == 1) : Judgement{};
-      if (severity(judgement.verdict) > severity(answer.verdict)) {
+      if (verdict::severity(judgement.verdict) > verdict::severity(answer.verdict)) {
         answer.verdict = judgement.verdict;
       }
       if (judgement.load_ratio_max) {

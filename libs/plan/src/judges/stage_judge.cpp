@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "judges/core_assessment.hpp"
-#include "severity.hpp"
 
 namespace holdfast::plan {
 namespace {
@@ -23,7 +22,7 @@ constexpr std::size_t kCoreCountMax = 2000;
 bool is_worse(const Judgement& a, const Judgement& b) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   if (a.verdict != b.verdict) {
-    return severity(b.verdict) > severity(a.verdict);
+    return verdict::severity(b.verdict) > verdict::severity(a.verdict);
   }
   return a.verdict == Verdict::kUnstable
              ? b.margin_mm.value_or(kNone) < a.margin_mm.value_or(kNone)
@@ -53,7 +52,7 @@ void add_hanging(const Hanging& hanging, StageJudgement& judged) {
       breaks ? verdict::ReasonCode::kCarrierBreaks : verdict::ReasonCode::kCarrierHolds;
   reason.reason.numbers = {hanging.load_ratio};
   reason.cells = {hanging.carrier, hanging.module};
-  if (breaks && severity(judged.verdict) < severity(Verdict::kOverload)) {
+  if (breaks && verdict::severity(judged.verdict) < verdict::severity(Verdict::kOverload)) {
     judged.verdict = Verdict::kOverload;
     judged.reasons.insert(judged.reasons.begin(), reason);
   } else if (breaks || is_worst) {
@@ -91,7 +90,9 @@ bool is_same(const model::RobotSpec& a, const model::RobotSpec& b) {
 
 }  // namespace
 
-bool is_unsafe(Verdict verdict) { return severity(verdict) >= severity(Verdict::kOverload); }
+bool is_unsafe(Verdict verdict) {
+  return verdict::severity(verdict) >= verdict::severity(Verdict::kOverload);
+}
 
 StageJudgement stage_judgement_of(const model::Robot& robot,
                                   const verdict::Assessment& assessment) {

@@ -65,16 +65,6 @@ model::CellPair ordered(const model::CellPair& pair) {
   return pair[0] < pair[1] ? pair : model::CellPair{pair[1], pair[0]};
 }
 
-std::optional<base::Direction> direction_between(const base::Lattice& lattice, const Cell& a,
-                                                 const Cell& b) {
-  for (const base::Direction direction : base::directions(lattice)) {
-    if (base::neighbour(lattice, a, direction) == b) {
-      return direction;
-    }
-  }
-  return std::nullopt;
-}
-
 std::size_t RobotState::CellHash::operator()(const Cell& cell) const {
   std::uint64_t key = static_cast<std::uint32_t>(cell.x);
   key = key * 0x9e3779b97f4a7c15U + static_cast<std::uint32_t>(cell.y);
@@ -132,7 +122,7 @@ std::array<double, 3> RobotState::gravity() const {
 }
 
 bool RobotState::are_connected(const Cell& a, const Cell& b) const {
-  return find(a) != kNone && find(b) != kNone && direction_between(lattice(), a, b) &&
+  return find(a) != kNone && find(b) != kNone && model::direction_between(lattice(), a, b) &&
          !released_.contains(ordered({a, b}));
 }
 

@@ -12,7 +12,6 @@ namespace holdfast::solver {
 namespace {
 
 using base::Vec6;
-using mechanics::ContactState;
 
 /// Halvings of the bracket in the line search, to the resolution of double.
 constexpr int kLineStepMax = 60;

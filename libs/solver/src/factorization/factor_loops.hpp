@@ -14,6 +14,7 @@
 /// The loops of factor_kernels.hpp. Included once per instruction set, in a namespace of its own;
 /// there is no fused multiply-add, so the bits are the same everywhere.
 namespace holdfast::solver {
+// NOLINTBEGIN(google-build-namespaces,misc-definitions-in-headers): a copy per instruction set.
 namespace {
 
 using Block = base::Mat6<double>;
@@ -536,4 +537,6 @@ constexpr FactorKernels kFactorKernels = {.subtract_product = subtract,
                                           .update_symmetric = update_symmetric};
 
 }  // namespace
+
+// NOLINTEND(google-build-namespaces,misc-definitions-in-headers)
 }  // namespace holdfast::solver

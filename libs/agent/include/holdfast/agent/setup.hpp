@@ -89,6 +89,7 @@ struct GeneralSetup {
 
 /// What programs know instead that know nothing but cubes on a floor.
 struct FloorSetup {
+  // NOLINTBEGIN(readability-identifier-naming): they stand for members of other setups.
   static constexpr base::Lattice lattice = base::kCubic;
   static constexpr bool has_plane = false;
   static constexpr std::array<std::array<double, 3>, 2> plane_axes{};
@@ -97,6 +98,8 @@ struct FloorSetup {
   static constexpr double ratio_per_nmm = 0;
   static constexpr double ratio_per_energy_root = 0;
   static constexpr std::uint8_t slack_bits = 0;
+
+  // NOLINTEND(readability-identifier-naming)
 
   static constexpr bool is_cubic() { return true; }
 

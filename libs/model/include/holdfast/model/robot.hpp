@@ -57,6 +57,10 @@ struct Facet {
 /// Two modules in neighbouring cells, in either order.
 using CellPair = std::array<base::Cell, 2>;
 
+/// The direction in which cell b lies from cell a; none if they are not neighbours.
+std::optional<base::Direction> direction_between(const base::Lattice& lattice, const base::Cell& a,
+                                                 const base::Cell& b);
+
 /// Modules that are made alike: mass, and what holds them, by direction of their lattice.
 struct ModuleKind {
   std::string name = {};

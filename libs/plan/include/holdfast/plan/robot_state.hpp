@@ -150,8 +150,4 @@ std::vector<std::string_view> differences_of_targets(const model::RobotSpec& a,
 /// A pair of cells in ascending order.
 model::CellPair ordered(const model::CellPair& pair);
 
-/// The direction of the second cell from the first, if they are neighbours.
-std::optional<base::Direction> direction_between(const base::Lattice& lattice, const base::Cell& a,
-                                                 const base::Cell& b);
-
 }  // namespace holdfast::plan

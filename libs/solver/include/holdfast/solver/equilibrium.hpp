@@ -91,6 +91,9 @@ struct Equilibrium : Solution {
 mechanics::ContactState contact_of(const model::Robot& robot, const Equilibrium& equilibrium,
                                    std::size_t module);
 
+/// Whether all facets that touch something stick; of a part of a robot, all of its own.
+bool are_all_stuck(const Equilibrium& equilibrium);
+
 /// What all facets of each module together do to it, by module: force in N, moment about the
 /// module's centre in N mm, in the global frame. Empty where no displacements are known.
 std::vector<base::Vec6<double>> ground_forces(const model::Robot& robot,

@@ -55,6 +55,10 @@ struct Solution {
   std::vector<mechanics::ContactState> contact;  ///< By facet, in the order of Robot::facets().
 };
 
+/// What all facets of a robot that touch something do by one law.
+mechanics::GroundFacet<double> ground_facet(const model::Robot& robot,
+                                            const ContactOptions& contact);
+
 /// How a linear solution ended.
 enum class LinearOutcome : std::uint8_t {
   kSolved,

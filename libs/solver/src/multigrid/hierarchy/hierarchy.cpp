@@ -253,11 +253,11 @@ void Hierarchy<Real>::set_types(const SpringGraph& graph, Level<Real>& level) co
 template <class Real>
 template <class Springs>
 void Hierarchy<Real>::add_level(const SpringGraph& graph, const Springs& springs,
-                                std::vector<std::size_t> colour_start) {
+                                const std::vector<std::size_t>& colour_start) {
   Level<Real>& level = levels_.emplace_back();
   level.node_count = graph.own_count();
   level.place_count = graph.order.size();
-  level.colour_start = std::move(colour_start);
+  level.colour_start = colour_start;
   if (is_finest(level) && (network_.is_along_axes || !network_.has_long_beams)) {
     level.stencil = make_stencil(network_, material_, std::is_same_v<Real, double>);
   }
@@ -308,7 +308,7 @@ void Hierarchy<Real>::gather(SpringGraph& graph, std::vector<GroundSpring>& spri
   graph = gathered_graph(graph, gathering, colour_start);
   springs = gathered_springs(springs, gathering, network_.ranks);
   gathered_depth_ = levels_.size();
-  add_level(graph, springs, std::move(colour_start));
+  add_level(graph, springs, colour_start);
   levels_.back().part.resize(gathering.own_count);
   levels_.back().gathering = std::move(gathering);
 }
@@ -456,7 +456,7 @@ Hierarchy<Real>::Hierarchy(ReducedNetwork& network, const model::Material& mater
     if (is_part && host::total(graph.ranks, graph.own_count()) <= kGatheredCount) {
       gather(graph, springs, colour_start);
     } else {
-      add_level(graph, springs, std::move(colour_start));
+      add_level(graph, springs, colour_start);
       share(graph, levels_.back());
     }
     if (!graph.is_part()) {

@@ -129,7 +129,7 @@ class Hierarchy {
               std::vector<std::size_t>& colour_start);
   template <class Springs>
   void add_level(const SpringGraph& graph, const Springs& springs,
-                 std::vector<std::size_t> colour_start);
+                 const std::vector<std::size_t>& colour_start);
   void couple(const SpringGraph& graph, Level<Real>& level) const;
   void clear_ground(Level<Real>& level, std::size_t free_type_count) const;
   void add_grounded_type(Level<Real>& level, const HeldSum& sum) const;

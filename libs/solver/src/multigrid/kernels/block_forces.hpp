@@ -7,6 +7,7 @@
 /// What forces a displacement leaves unbalanced, in single precision, from the blocks of K: the
 /// least arithmetic. Its rounding errors are 6e-8 of K_pp z_p, at every node others.
 namespace holdfast::solver {
+// NOLINTBEGIN(google-build-namespaces,misc-definitions-in-headers): a copy per instruction set.
 namespace {
 
 template <int kAxis>
@@ -123,7 +124,7 @@ inline Wide wide_product(const AxesView<float>& level, const Six<float>* p, std:
              wide_axis_sum<2>(level, p, node);
   const Block<double>& diagonal = level.diagonal_double[level.type[node]];
   for (int k = 0; k < 6; ++k) {
-    const double factor = static_cast<double>(p[node].v[k]);
+    const auto factor = static_cast<double>(p[node].v[k]);
     const Double factors = {factor, factor, factor, factor};
     sum.low += load_double(diagonal.column(k)) * factors;
     sum.high += load_high(diagonal.column(k) + 4) * factors;
@@ -149,4 +150,6 @@ inline Wide wide_product(const ClusterView<float>& level, const Six<float>* p, s
 }
 
 }  // namespace
+
+// NOLINTEND(google-build-namespaces,misc-definitions-in-headers)
 }  // namespace holdfast::solver

@@ -9,6 +9,7 @@
 
 // Included once per instruction set, in a namespace of its own.
 namespace holdfast::solver {
+// NOLINTBEGIN(google-build-namespaces,misc-definitions-in-headers): a copy per instruction set.
 namespace {
 
 inline void relax_first(const std::uint32_t* type, const Block<float>* inverse, const Six<float>* r,
@@ -250,4 +251,6 @@ constexpr Kernels<Real> kAll = {.restrict_to = restrict_to<Real>,
                                 .dot_split = dot_split<Real>};
 
 }  // namespace
+
+// NOLINTEND(google-build-namespaces,misc-definitions-in-headers)
 }  // namespace holdfast::solver

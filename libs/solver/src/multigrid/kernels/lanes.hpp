@@ -10,6 +10,7 @@
 /// Eight lanes at once: a node's vector of single or double precision.
 /// Included once per instruction set, in a namespace of its own.
 namespace holdfast::solver {
+// NOLINTBEGIN(google-build-namespaces,misc-definitions-in-headers): a copy per instruction set.
 namespace {
 
 using Single = float __attribute__((vector_size(32)));
@@ -385,4 +386,6 @@ inline Wide motion_moved(const double* arm, const Wide& motion) {
 }
 
 }  // namespace
+
+// NOLINTEND(google-build-namespaces,misc-definitions-in-headers)
 }  // namespace holdfast::solver

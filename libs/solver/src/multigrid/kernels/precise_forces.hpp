@@ -14,6 +14,7 @@
 /// in it is a false stress, not a false load: N^2 roundings of the true stress, 1e-7 for 30,000
 /// modules.
 namespace holdfast::solver {
+// NOLINTBEGIN(google-build-namespaces,misc-definitions-in-headers): a copy per instruction set.
 namespace {
 
 /// Force and torque in the middle of the beam from a to b. The rotations of both ends, crossed,
@@ -85,4 +86,6 @@ inline Wide wide_product(const View& level, const Six<double>* p, std::size_t no
 }
 
 }  // namespace
+
+// NOLINTEND(google-build-namespaces,misc-definitions-in-headers)
 }  // namespace holdfast::solver

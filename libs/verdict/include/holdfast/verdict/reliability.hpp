@@ -57,6 +57,10 @@ std::optional<Reliability> find_reliability(const Assessment& assessment,
 Reliability find_reliability(std::span<const LoadCase> cases, const StrengthScatter& scatter,
                              std::size_t likeliest_max = kLikeliestMax);
 
+/// Whether a robot holds with a probability that is asked for: safe if so, overload if certainly
+/// not, undecided where bounds leave it open or nothing is known. Safe if 0 is asked.
+Verdict judge_probability(const std::optional<Reliability>& sure, double asked);
+
 /// Says it for load ratios that are exact.
 Reliability find_reliability(std::span<const double> load_ratios, const StrengthScatter& scatter);
 
