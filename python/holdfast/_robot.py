@@ -59,6 +59,13 @@ class Robot:
         Kinds of modules by name, as in holdfast JSON, and a mapping from cells to names.
     loads
         Payloads: a mapping from cells to a force (3) in N, or a force and a torque (6) in N mm.
+    open
+        Faces that touch and are not joined: (k, 2, 3), pairs of cells.
+    connections
+        What single connections hold, as in holdfast JSON, such as
+        ``[{'between': [(0, 0, 0), (1, 0, 0)], 'strength_n': 6}]``.
+    joined
+        ``all``, or ``listed``: the pairs in `connections` alone are joined.
     gravity
         Three numbers, m/s^2. By default (0, 0, -9.81).
     material
@@ -77,13 +84,16 @@ class Robot:
                  lattice: Optional[str] = None, supports: Any = 0, obstacles: Any = None,
                  masses: Any = None, kinds: Optional[Mapping[str, Any]] = None,
                  kind_of: Optional[Mapping[Cell, str]] = None, loads: Any = None,
-                 gravity: Optional[Sequence[float]] = None,
+                 open: Optional[Iterable[Cells]] = None,
+                 connections: Optional[Sequence[Mapping[str, Any]]] = None,
+                 joined: Optional[str] = None, gravity: Optional[Sequence[float]] = None,
                  material: Optional[Mapping[str, Any]] = None, robot: Optional[str] = None,
                  steps: Optional[Sequence[Any]] = None, name: str = '') -> None:
         cells, planned, fixed = listed(cells), listed(planned), listed(fixed)
         head = head_of({'lattice': lattice and _core.lattice_name(lattice),
                         'obstacles': obstacle_list(obstacles), 'kinds': kinds,
-                        'loads': load_list(loads), 'gravity_m_s2': gravity, 'material': material,
+                        'loads': load_list(loads), 'open': listed(open), 'connections': connections,
+                        'joined': joined, 'gravity_m_s2': gravity, 'material': material,
                         'robot': robot, 'steps': steps, 'name': name or None},
                        level(supports, cells))
         self._held = _core.Structure.make(cells, planned, fixed, head,

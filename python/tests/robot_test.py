@@ -100,7 +100,11 @@ def test_what_is_no_robot(cells, said):
     {'gravity': (0, 0, float('nan'))}, {'supports': 2**80}, {'supports': 0.5},
     {'supports': {'bonds': 1}}, {'fixed': [True]}, {'fixed': [[9, 9, 9]]},
     {'obstacles': [{'cells': [[0, 0, 0]]}]}, {'obstacles': [{'hold': 'tight'}]},
-    {'kind_of': {(0, 0, 0): 'unknown'}}, {'steps': [{'jump': 1}]}, {'kinds': {'a': object()}}])
+    {'kind_of': {(0, 0, 0): 'unknown'}}, {'steps': [{'jump': 1}]}, {'kinds': {'a': object()}},
+    {'open': [[(0, 0, 0), (0, 0, 2)]]}, {'open': [[(0, 0, 0)]]}, {'open': 3},
+    {'open': [[(0, 0, 0), (0, 0, 1)]]}, {'joined': 'some'},
+    {'connections': [{'strength_n': 3}]},
+    {'connections': [{'between': [(0, 0, 0), (0, 0, 1)], 'strength_n': -1}]}])
 def test_options_that_are_refused(options):
     with pytest.raises((holdfast.Error, TypeError)) as caught:
         Robot(TOWER, **options)
@@ -117,6 +121,32 @@ def test_masses_loads_and_kinds_are_where_they_belong():
     assert force[2] == pytest.approx((0.06106 + 0.5 + 0.2 + 0.25) * 9.81 + 2, rel=1e-9)
     by_number = Robot(TOWER, masses=[0.1, 0.2, 0.3])
     assert by_number.masses.tolist() == [0.1, 0.2, 0.3]
+
+
+HOOK = [[0, 0, 0], [0, 0, 1], [0, 0, 2], [1, 0, 2], [1, 0, 1]]
+
+
+@pytest.mark.parametrize('said', [
+    {'open': [[(0, 0, 1), (1, 0, 1)]]}, {'open': np.array([[[1, 0, 1], [0, 0, 1]]])},
+    {'open': {((0, 0, 1), (1, 0, 1))}}, {'open': iter([[[0, 0, 1], (1, 0, 1)]])},
+    {'joined': 'listed', 'connections': [{'between': pair} for pair in zip(HOOK, HOOK[1:])]}])
+def test_faces_that_touch_need_not_be_joined(said):
+    robot = Robot(HOOK, **said)
+    assert len(robot.connections) == 4
+    # By statics: two modules hang a pitch beside the column.
+    bent = robot.check().connections['bending_nmm'].max()
+    assert bent == pytest.approx(2 * 0.06106 * 9.81 * 40, rel=1e-9)
+    assert robot.translated((3, 0, 0)).check().load_ratio_max == robot.check().load_ratio_max
+    assert Robot.from_text(robot.json()).connections.tolist() == robot.connections.tolist()
+
+
+def test_a_connection_has_its_own_strength():
+    pair = [(0, 0, 2), (1, 0, 2)]
+    whole = Robot(HOOK, open=[[(0, 0, 1), (1, 0, 1)]])
+    weak = Robot(HOOK, open=[[(0, 0, 1), (1, 0, 1)]],
+                 connections=[{'between': pair, 'strength_n': 6}])
+    ratio = weak.check().load_ratio_max / whole.check().load_ratio_max
+    assert ratio == pytest.approx(14.97 / 6, rel=1e-3)
 
 
 def test_a_mask_and_cells_fix_the_same():
