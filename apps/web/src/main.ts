@@ -17,6 +17,7 @@ import { DeformedPanel } from './ui/deformed';
 import { openGallery } from './ui/gallery';
 import { Keeper } from './ui/keeper';
 import { KEYS, listenToKeys } from './ui/keyboard';
+import { makeLooking } from './ui/looking';
 import { makeMaterial } from './ui/material';
 import { Player } from './ui/player';
 import { listenToPointer } from './ui/pointer';
@@ -224,7 +225,7 @@ function begin(): void {
   new LossPanel(app);
   new DeformedPanel(app);
   new BreakingPanel(app);
-  const actions = makeActions(app, player, timeline);
+  const actions = { ...makeActions(app, player, timeline), ...makeLooking(app) };
   listenToPointer(app);
   listenToKeys(app, actions);
   listenToFiles(bench);

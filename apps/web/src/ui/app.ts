@@ -14,7 +14,8 @@ import { Ground } from '../view/ground';
 import { LoadView } from '../view/loads';
 import { ObstacleView } from '../view/obstacles';
 import { RobotView, type Losses } from '../view/robot_view';
-import { Stage } from '../view/stage';
+import type { Section } from '../view/section';
+import { OBLIQUE, Stage } from '../view/stage';
 import { connectionText, showDetails, showFaceLegend, showFacetLegend, showFinding, showLegend } from './answer_panel';
 import { showChip, trialText } from './chip';
 import { byId, clearErrors, make, say, tell } from './dom';
@@ -142,7 +143,7 @@ export class App {
       this.showRobot();
       this.showPointed();
       if (isFirst && exhibit?.bounds && !this.stage.holds(exhibit.bounds.low, exhibit.bounds.high)) {
-        this.see(true);
+        this.stage.fit(exhibit.bounds.low, exhibit.bounds.high);
       }
     }
   }
@@ -189,15 +190,30 @@ export class App {
     this.view.paint();
   }
 
+  /** Cuts the robot open; undefined: it is whole. */
+  setSection(section: Section | undefined): void {
+    this.view.section = section;
+    this.stopTopple();
+    this.showRobot();
+  }
+
+  /** Loads inside the robot are seen, through its modules. */
+  lookThrough(isOn: boolean): void {
+    this.stopTopple();
+    this.view.xray = isOn;
+    this.showRobot();
+  }
+
   /** Gives up the loads that are being worked out. */
   stop(): void {
     this.judge.stop();
   }
 
-  see(keepsSide = false): void {
+  /** All of it, from a side; undefined: from where it is seen now. */
+  see(from: Place | undefined = OBLIQUE): void {
     const box = this.exhibit?.bounds ?? boundsOf(this.robot);
     const { low, high } = box ?? { low: [-2, -2, 0], high: [2, 2, 1] };
-    this.stage.fit(low, high, keepsSide);
+    this.stage.fit(low, high, from);
   }
 
   /** What is under the pointer, at a point of the window; `side` is a connection's. Nothing while something is pinned. */

@@ -18,6 +18,8 @@ export const KEYS: readonly [keys: string, text: string][] = [
   ['[  ]', 'less, more exaggeration'],
   ['Q  E  +  −', 'turn left, turn right, nearer, further'],
   ['H  W', 'see all, see the worst connection'],
+  ['6  7  8  9', 'see it from the front right, the front, the right, above'],
+  ['X  M', 'see through the modules; the picture alone, for an audience'],
   ['T', 'let it topple or break, if it does; put it together again'],
   ['K  ,  .', 'the robot’s own computation: play or pause, step back, step on'],
   ['S  U  R', 'steps: play or pause, to the first unsafe stage, record'],

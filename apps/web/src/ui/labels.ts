@@ -17,7 +17,7 @@ export function placeLabels(stage: Stage, view: RobotView, robot: EditedRobot, f
     labels.replaceChildren();
     return;
   }
-  const at = stage.project(view.connectionPoint(worst));
+  const at = view.isCutAway(worst) ? undefined : stage.project(view.connectionPoint(worst));
   const label = (labels.firstElementChild ?? make('span')) as HTMLElement;
   label.textContent = formatRatio(answer.loads[LOAD_FIELDS * worst]);
   label.className = answer.broken.includes(worst) ? 'label breaks' : 'label';

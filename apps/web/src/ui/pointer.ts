@@ -45,7 +45,7 @@ export function listenToPointer(app: App): void {
         app.whereNext.preview([]);
         return;
       }
-      const hit = pick(app.robot, app.stage.ray(event.clientX, event.clientY));
+      const hit = pick(app.robot, app.stage.ray(event.clientX, event.clientY), app.view.section);
       const isOnRobot = hit !== undefined && hit.what !== 'ground' && app.bench.tool !== 'look' && !app.isExhibiting && !isBent(app);
       const turns = event.altKey || event.ctrlKey || event.metaKey || event.shiftKey;
       gesture = { hit, x: event.clientX, y: event.clientY, draws: false, isClick: true, cells: [], timer: 0 };
@@ -136,7 +136,7 @@ function hover(app: App, x: number, y: number): void {
     app.whereNext.preview([]);
     return; // Nothing is where it is built.
   }
-  const hit = pick(app.robot, app.stage.ray(x, y));
+  const hit = pick(app.robot, app.stage.ray(x, y), app.view.section);
   const isModule = hit?.what === 'module';
   const isThere = hit !== undefined && hit.what !== 'ground';
   app.point(isThere ? hit.cell : undefined, isModule ? nearSeam(app.robot, hit) : undefined, x, y);
@@ -190,7 +190,7 @@ function draw(app: App, gesture: Gesture, x: number, y: number): void {
     app.whereNext.preview(row);
     return;
   }
-  const hit = pick(robot, ray);
+  const hit = pick(robot, ray, app.view.section);
   if (hit && hit.what !== 'ground' && !gesture.cells.some((other) => String(other) === String(hit.cell))) {
     gesture.cells.push(hit.cell);
     app.view.point(gesture.cells.map((one) => robot.slot(one)).filter((slot) => slot !== undefined));

@@ -102,7 +102,7 @@ export class Toppling {
       widen(box, [x, y, Math.max(z, low[2] - DEPTH_CELLS)]);
     }
     if (!this.stage.holds(box.low, box.high)) {
-      this.stage.fit(box.low, box.high, true);
+      this.stage.fit(box.low, box.high);
     }
   }
 

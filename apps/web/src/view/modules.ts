@@ -20,6 +20,9 @@ export const enum Pattern {
   kPointed = 8,
 }
 
+/** How much of the picture modules are that connections are seen through. */
+const SHEER = 0.16;
+
 /** By shape: what a shader is told to draw. */
 const DEFINES: Record<Shape, Record<string, string>> = {
   cube: {},
@@ -371,6 +374,14 @@ export class ModuleMesh {
     this.reserve(64);
   }
 
+  /** Whether what is behind and inside modules is seen through them. */
+  set isSheer(isSheer: boolean) {
+    this.uniforms.opacity.value = isSheer ? SHEER : 1;
+    this.materials.forEach((material) => material.dispose());
+    this.materials.clear();
+    this.mesh.material = this.material();
+  }
+
   set exaggeration(factor: number) {
     this.uniforms.exaggeration.value = factor;
   }
@@ -404,6 +415,7 @@ export class ModuleMesh {
       this.materials.get(shape) ??
       new ShaderMaterial({
         transparent: opacity < 1,
+        depthWrite: opacity > SHEER,
         // The outline of a sphere is drawn by its shader, and smoothed so.
         alphaToCoverage: shape === 'sphere' && opacity === 1,
         defines: DEFINES[shape],

@@ -5,6 +5,7 @@ import type { Cell } from '../model/cell';
 import type { Box, EditedRobot } from '../model/edited_robot';
 import { DISC_HALF, dot, minus, type Lattice, type Place } from '../model/lattice';
 import { obstacleBox } from './obstacles';
+import { cutsAway, type Section } from './section';
 
 /** Where a ray meets the robot, an obstacle or the ground. */
 export interface Hit {
@@ -16,10 +17,13 @@ export interface Hit {
   offset: Place;
 }
 
-/** Walks through the lattice from cell to cell, as [Amanatides 1987] in cubes: the robot's size costs nothing. */
-export function pick(robot: EditedRobot, ray: Ray): Hit | undefined {
+/**
+ * Walks through the lattice from cell to cell, as [Amanatides 1987] in cubes: the robot's size costs nothing.
+ * Modules that a section cuts away are met by nothing.
+ */
+export function pick(robot: EditedRobot, ray: Ray, section?: Section): Hit | undefined {
   const box = boxOf(robot);
-  return (box && walk(robot, ray, box)) ?? pickGround(robot, ray);
+  return (box && walk(robot, ray, box, section)) ?? pickGround(robot, ray);
 }
 
 /** Around everything that can be met. */
@@ -55,7 +59,7 @@ function stretch(ray: Ray, { low, high }: Box): [enter: number, leave: number] {
   return [enter, leave];
 }
 
-function walk(robot: EditedRobot, ray: Ray, box: Box): Hit | undefined {
+function walk(robot: EditedRobot, ray: Ray, box: Box, section?: Section): Hit | undefined {
   const { lattice } = robot;
   const { walls } = lattice;
   const sight = ray.direction.toArray() as unknown as Place;
@@ -69,7 +73,7 @@ function walk(robot: EditedRobot, ray: Ray, box: Box): Hit | undefined {
   let face = lattice.directionOf(minus([0, 0, 0], sight));
   for (let at = enter; at <= leave; ) {
     const node = lattice.placeOfAxial(axial);
-    const hit = meet(robot, lattice.cell(axial), node, ray, at, face);
+    const hit = cutsAway(section, node) ? undefined : meet(robot, lattice.cell(axial), node, ray, at, face);
     if (hit) {
       return hit;
     }

@@ -9,10 +9,12 @@ import { Role, type Cell } from '../model/cell';
 import type { EditedRobot } from '../model/edited_robot';
 import { CUBIC, type Lattice } from '../model/lattice';
 import {
-  FIXED, NEUTRAL, UNKNOWN, UNSTABLE, brokenColour, loadColour, loadStep, mix, type Rgb, type ScaleName, type Subject,
+  FIXED, NEUTRAL, UNKNOWN, UNSTABLE, brokenColour, loadColour, loadStep, mix, stepColours, type Rgb, type ScaleName, type Subject,
 } from './colours';
+import { Bars, type Bar } from './bars';
 import { ModuleMesh, Pattern } from './modules';
 import { cellEdges } from './polyhedron';
+import { cutsAway, opens, type Section } from './section';
 import type { Stage } from './stage';
 
 /** An answer and the slots that its modules had when it was asked for. */
@@ -82,6 +84,11 @@ export function moduleLoads(judged: Judged): ModuleLoads {
 export class RobotView {
   private readonly modules = new ModuleMesh();
   private readonly ghosts = new ModuleMesh(0.72);
+  private readonly bars = new Bars();
+  /** Loads are shown inside the robot too. */
+  private isXray = false;
+  /** What is in front of it is not shown. */
+  section?: Section;
   private lattice = CUBIC;
   private readonly cursor = new LineSegments(
     cellEdges(CUBIC, CURSOR_SIZE),
@@ -114,7 +121,7 @@ export class RobotView {
     this.cursor.renderOrder = 5;
     this.cursor.visible = false;
     this.collar.visible = false;
-    stage.robot.add(this.modules.mesh, this.ghosts.mesh, this.collar);
+    stage.robot.add(this.modules.mesh, this.ghosts.mesh, this.collar, this.bars.group);
     stage.scene.add(this.cursor);
     this.ghosts.mesh.renderOrder = 2;
     this.ghosts.update(0);
@@ -128,7 +135,8 @@ export class RobotView {
     this.loads = judged?.answer.has_loads ? moduleLoads(judged) : undefined;
     const drawn: number[] = [];
     for (let slot = 0; slot < robot.count; ++slot) {
-      if (isApart || !robot.isHidden(slot)) {
+      const isSeen = isApart || this.isXray || !robot.isHidden(slot) || opens(this.section, robot.placeAt(slot));
+      if (isSeen && !cutsAway(this.section, robot.placeAt(slot))) {
         drawn.push(slot);
       }
     }
@@ -168,8 +176,43 @@ export class RobotView {
     this.paintSeams();
     this.pointed.forEach((slot) => this.mark(slot, Pattern.kPointed));
     this.modules.update(this.drawn.length, 'tint', 'pattern', 'seams');
-    this.collar.visible = this.worst !== undefined && !this.hasOwnColours;
+    this.markWorst();
+    this.placeBars();
     this.stage.draw();
+  }
+
+  /** Modules that one sees through, with a bar for each connection in the colour of its load, from the next show() on. */
+  set xray(isXray: boolean) {
+    this.isXray = isXray;
+    this.modules.isSheer = isXray;
+  }
+
+  /** Nothing where modules are elsewhere, or the loads are not known or not what is shown. */
+  private placeBars(): void {
+    const answer = this.judged?.answer;
+    const isShown = this.isXray && answer !== undefined && !this.mechanism && !this.hasOwnColours && !this.losses;
+    this.bars.group.visible = isShown;
+    if (!isShown) {
+      return;
+    }
+    const colours = stepColours(this.scale);
+    const isBroken = new Set(answer.broken);
+    const areLoaded = answer.has_loads && answer.verdict !== 'unstable';
+    const bars: Bar[] = [];
+    for (let i = 0; 3 * i < answer.connections.length; ++i) {
+      const [a, b, direction] = answer.connections.subarray(3 * i, 3 * i + 3);
+      if (this.instances[this.judged!.slots[a]] >= 0 && this.instances[this.judged!.slots[b]] >= 0) {
+        const breaks = areLoaded && isBroken.has(i);
+        const step = areLoaded ? loadStep(answer.loads[LOAD_FIELDS * i], breaks) : 0;
+        bars.push({
+          middle: this.connectionPoint(i),
+          direction: new Vector3().fromArray(this.lattice.units[direction]),
+          colour: step > 0 ? colours[step - 1] : UNKNOWN,
+          width: breaks ? 2 : 1,
+        });
+      }
+    }
+    this.bars.show(bars);
   }
 
   /** The step of every connection's load, on both of its modules. */
@@ -282,6 +325,7 @@ export class RobotView {
   set exaggeration(factor: number) {
     this.modules.exaggeration = factor;
     this.markWorst();
+    this.placeBars();
     this.stage.draw();
   }
 
@@ -311,6 +355,11 @@ export class RobotView {
   get worst(): number | undefined {
     const answer = this.judged?.answer;
     return answer && answer.verdict !== 'unstable' && !this.losses ? (answer.worst ?? undefined) : undefined;
+  }
+
+  /** A connection of a part that is cut away. */
+  isCutAway(index: number): boolean {
+    return cutsAway(this.section, this.connectionPoint(index).toArray());
   }
 
   private setLattice(lattice: Lattice): void {
@@ -364,6 +413,7 @@ export class RobotView {
     this.mechanism = motions;
     this.placeMotions();
     this.modules.update(this.drawn.length, 'motion', 'turn');
+    this.placeBars();
     this.stage.draw();
   }
 
@@ -405,7 +455,7 @@ export class RobotView {
 
   private markWorst(): void {
     const { worst } = this;
-    this.collar.visible = worst !== undefined && !this.hasOwnColours;
+    this.collar.visible = worst !== undefined && !this.hasOwnColours && !this.isCutAway(worst);
     if (worst !== undefined) {
       const direction = this.lattice.units[this.judged!.answer.connections[3 * worst + 2]];
       this.collar.position.copy(this.connectionPoint(worst));

@@ -22,6 +22,9 @@ const FLIGHT_MS = 350;
 
 const UPRIGHT = new Vector3(0, 0, 1);
 
+/** From where the robot is seen at first: from the front, right and above. */
+export const OBLIQUE: Place = [0.62, -0.62, 0.48];
+
 /** Moves something to where it is at a time; true while it goes on moving. */
 export type Motion = (now: number) => boolean;
 
@@ -150,15 +153,20 @@ export class Stage {
     return Math.atan2(x, -y);
   }
 
-  /** Looks at a box of nodes from the front right, from the same side if `keepsSide`. */
-  fit(low: Place, high: Place, keepsSide = false): void {
+  /** Where the eye is from what it looks at, of length one. */
+  get side(): Vector3 {
+    return this.camera.position.clone().sub(this.controls.target).normalize();
+  }
+
+  /** Looks at a box of nodes from a side, given where up is z; from the same one as now if it is undefined. */
+  fit(low: Place, high: Place, from?: Place): void {
     const middle = new Vector3().fromArray(low.map((value, k) => (value + high[k]) / 2));
     const radius = 0.5 * Math.hypot(...low.map((value, k) => high[k] - value + 1.6));
     const half = (this.camera.fov * Math.PI) / 360;
     const narrow = Math.min(half, Math.atan(Math.tan(half) * this.camera.aspect));
-    const side = keepsSide
-      ? this.camera.position.clone().sub(this.controls.target).normalize()
-      : new Vector3(0.62, -0.62, 0.48).normalize().applyQuaternion(new Quaternion().setFromUnitVectors(UPRIGHT, this.camera.up));
+    const side = from
+      ? new Vector3().fromArray(from).normalize().applyQuaternion(new Quaternion().setFromUnitVectors(UPRIGHT, this.camera.up))
+      : this.side;
     this.controls.target.copy(middle);
     this.camera.position.copy(middle).addScaledVector(side, (1.02 * radius) / Math.sin(narrow));
     this.camera.near = Math.max(0.05, radius / 200);
