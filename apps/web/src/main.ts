@@ -11,6 +11,7 @@ import { showFaceLegend, showLegend } from './ui/answer_panel';
 import { byId, icon, make, say, tell } from './ui/dom';
 import { listenToFiles, reportOf, take, write } from './ui/files';
 import { BreakingPanel } from './ui/breaking';
+import { ChallengePanel } from './ui/challenges';
 import { Collapse } from './ui/collapse';
 import { ConnectionTable } from './ui/connections';
 import { DeformedPanel } from './ui/deformed';
@@ -238,7 +239,8 @@ function begin(): void {
   byId('fit').onclick = actions.h;
   byId('verdict').onclick = actions.w;
   byId('help').onclick = actions['?'];
-  byId('gallery-open').onclick = () => openGallery(bench, keeper);
+  const challenges = new ChallengePanel(app);
+  byId('gallery-open').onclick = () => openGallery(bench, keeper, (challenge) => void challenges.begin(challenge));
   byId('new').onclick = () => bench.history.replace('beginning anew', new EditedRobot(bench.robot.lattice));
   byId('save').onclick = () => byId<HTMLDialogElement>('takeaway').showModal();
   for (const button of document.querySelectorAll<HTMLButtonElement>('[data-save]')) {

@@ -4,12 +4,14 @@ import { CoreClient } from '../core/client';
 import type { Answer } from '../core/types';
 import { Role } from '../model/cell';
 import type { EditedRobot } from '../model/edited_robot';
+import type { Challenge } from '../model/challenges';
 import { GALLERY, type Example } from '../model/examples';
 import { dot, type Lattice, type Place } from '../model/lattice';
 import type { Workbench } from '../model/workbench';
 import { FIXED, UNKNOWN, UNSTABLE, brokenColour, css, loadColour, mix, type Rgb } from '../view/colours';
 import { cellFaces } from '../view/polyhedron';
 import { moduleLoads } from '../view/robot_view';
+import { challengeButtons } from './challenges';
 import { byId, make } from './dom';
 import { openText, robotOf } from './files';
 import { nameOf, whenOf, type Keeper } from './keeper';
@@ -24,8 +26,9 @@ const PICTURE_COUNT_MAX = 2000;
 const client = new CoreClient();
 let isFilled = false;
 
-export function openGallery(bench: Workbench, keeper: Keeper): void {
+export function openGallery(bench: Workbench, keeper: Keeper, begin: (challenge: Challenge) => void): void {
   const dialog = byId<HTMLDialogElement>('gallery');
+  byId('challenges').replaceChildren(...challengeButtons(begin));
   if (!isFilled) {
     isFilled = true;
     fill(bench, dialog);
