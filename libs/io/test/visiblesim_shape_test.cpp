@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -180,6 +181,46 @@ TEST(VisibleSimSolid, may_compute_its_numbers_and_have_comments) {
             solid("translate([4,4,4]) sphere(3.3)"));
   EXPECT_EQ(solid("union() { // 67 a ball\n sphere(2); // and no more\n }"), solid("sphere(2)"));
   EXPECT_EQ(solid("cube([1e0, 10e-1, 1.0E+0], center = false);;").size(), 8U);
+}
+
+TEST(VisibleSimSolid, of_many_parts_is_what_its_parts_are) {
+  const std::array parts = {"translate([3,4,5]) sphere(2.2)",
+                            "translate([8,2,1]) rotate([30,40,50]) cube([3,2,4], true)",
+                            "translate([2,9,6]) scale([2,1,0.5]) cylinder(4,1.5,0.5,true)",
+                            "translate([8,8,8]) rotate([90,0,0]) torus(2,1)",
+                            "difference() { translate([5,5,2]) sphere(2); cube([5,12,12]); }",
+                            "intersection() { translate([6,3,9]) sphere(2); cube([6,12,12]); }"};
+  std::string whole;
+  Cells expected;
+  for (const char* part : parts) {
+    whole += std::string(part) + "; ";
+    expected.merge(solid(part));
+  }
+  EXPECT_EQ(solid("union() { " + whole + "}"), expected);
+  EXPECT_GT(expected.size(), 60U);
+}
+
+TEST(VisibleSimSolid, whose_parts_are_elsewhere_takes_no_time_and_one_whose_parts_meet_is_refused) {
+  const auto of = [](int count, double apart) {
+    std::string content;
+    for (int i = 0; i < count; ++i) {
+      content += "translate([" + std::to_string(3 + i * apart) + ", 3, 3]) sphere(2) ";
+    }
+    return read_document(
+        "<world gridSize=\"9999,9999,9999\"><blockList><csg boundingBox=\"false\" "
+        "offset=\"false\" content=\"" +
+        content + "\"/></blockList></world>");
+  };
+  const auto apart = of(1000, 5);
+  ASSERT_TRUE(apart.has_value()) << apart.error().message;
+  EXPECT_EQ(apart.value().document.modules.size(),
+            1000 * solid("translate([3,3,3]) sphere(2)").size());
+  const auto huge = read_document(
+      "<world gridSize=\"3000,3000,3000\"><blockList><csg content=\"difference() { sphere(1400); "
+      "sphere(1399.9); }\"/></blockList></world>");
+  ASSERT_FALSE(huge.has_value());
+  EXPECT_NE(huge.error().message.find("more than can be filled"), std::string::npos)
+      << huge.error().message;
 }
 
 TEST(VisibleSimSolid, that_is_none_is_refused) {

@@ -15,6 +15,9 @@ namespace {
 
 using Point = Solid::Point;
 
+/// How far boxes reach beyond what they hold, as a share.
+constexpr double kRoom = 1e-9;
+
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// A point turned about one axis by an angle in degrees, counterclockwise as seen from its end.
@@ -75,12 +78,31 @@ double square(double number) { return number * number; }
 
 }  // namespace
 
-bool Solid::contains_any(const Node& node, const Point& point) const {
-  return std::ranges::any_of(node.children,
-                             [&](std::size_t child) { return contains(child, point); });
+void Solid::make_boxes() {
+  for (std::size_t index = 0; index < nodes_.size(); ++index) {
+    const Box whole = bounds(index, true);
+    Box& box = boxes_.emplace_back();
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [low, high] = std::minmax(whole.low[i], whole.high[i]);
+      const double room = kRoom * (1 + std::abs(low) + std::abs(high));
+      box.low[i] = low - room;
+      box.high[i] = high + room;
+    }
+  }
 }
 
-bool Solid::contains(std::size_t index, const Point& point) const {
+bool Solid::contains_any(const Node& node, const Point& point, std::size_t& visited) const {
+  return std::ranges::any_of(node.children,
+                             [&](std::size_t child) { return contains(child, point, visited); });
+}
+
+bool Solid::contains(std::size_t index, const Point& point, std::size_t& visited) const {
+  ++visited;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!(point[i] >= boxes_[index].low[i] && point[i] <= boxes_[index].high[i])) {
+      return false;
+    }
+  }
   const Node& node = nodes_[index];
   const Point& n = node.numbers;
   const auto& [x, y, z] = point;
@@ -90,21 +112,21 @@ bool Solid::contains(std::size_t index, const Point& point) const {
   switch (node.kind) {
     case Kind::kUnion:
     case Kind::kColor:
-      return contains_any(node, point);
+      return contains_any(node, point, visited);
     case Kind::kDifference:
-      return !node.children.empty() && contains(node.children.front(), point) &&
+      return !node.children.empty() && contains(node.children.front(), point, visited) &&
              std::none_of(node.children.begin() + 1, node.children.end(),
-                          [&](std::size_t child) { return contains(child, point); });
+                          [&](std::size_t child) { return contains(child, point, visited); });
     case Kind::kIntersection:
       return !node.children.empty() && std::ranges::all_of(node.children, [&](std::size_t child) {
-        return contains(child, point);
+        return contains(child, point, visited);
       });
     case Kind::kTranslate:
-      return contains_any(node, {x - n[0], y - n[1], z - n[2]});
+      return contains_any(node, {x - n[0], y - n[1], z - n[2]}, visited);
     case Kind::kRotate:
-      return contains_any(node, rotated_back(point, n));
+      return contains_any(node, rotated_back(point, n), visited);
     case Kind::kScale:
-      return contains_any(node, {x / n[0], y / n[1], z / n[2]});
+      return contains_any(node, {x / n[0], y / n[1], z / n[2]}, visited);
     case Kind::kCube:
       return is_between(x, n[0]) && is_between(y, n[1]) && is_between(z, n[2]);
     case Kind::kSphere:

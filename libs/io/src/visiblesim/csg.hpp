@@ -28,8 +28,11 @@ class Solid {
   /// Errors: what stands there is none of these, or is more than kNodeCountMax of them.
   static base::Result<Solid> parse(std::string_view text);
 
-  /// Whether a point is in the solid or on its surface.
-  bool contains(const Point& point) const { return contains(0, point); }
+  /// Whether a point is in the solid or on its surface. Adds to `visited` how many parts were
+  /// asked; those whose boxes are elsewhere are not.
+  bool contains(const Point& point, std::size_t& visited) const {
+    return contains(0, point, visited);
+  }
 
   /// A box that holds the solid.
   Box bounds() const { return bounds(0, true); }
@@ -70,12 +73,15 @@ class Solid {
     std::vector<std::size_t> children;
   };
 
-  bool contains(std::size_t index, const Point& point) const;
-  bool contains_any(const Node& node, const Point& point) const;
+  /// To be called when all parts are there.
+  void make_boxes();
+  bool contains(std::size_t index, const Point& point, std::size_t& visited) const;
+  bool contains_any(const Node& node, const Point& point, std::size_t& visited) const;
   Box bounds(std::size_t index, bool is_exact) const;
   Box bounds_of_children(const Node& node, bool is_exact) const;
 
   std::vector<Node> nodes_;  ///< The first is the whole.
+  std::vector<Box> boxes_;   ///< By part, in its own frame, with room for rounding.
 };
 
 }  // namespace holdfast::io

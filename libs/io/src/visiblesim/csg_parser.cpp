@@ -30,6 +30,7 @@ class SolidParser {
     if (fault_) {
       return base::bad_input(*fault_);
     }
+    solid_.make_boxes();
     return std::move(solid_);
   }
 

@@ -300,8 +300,8 @@ void read_box(XmlReading& reading, const pugi::xml_node& box) {
   }
 }
 
-/// More points of a solid than this, times its parts, take too long.
-constexpr double kSolidWorkMax = 2e8;
+/// More questions whether a part of a solid holds a point than these take too long: seconds.
+constexpr std::size_t kSolidWorkMax = 200'000'000;
 
 /// How VisibleSim lays a solid over the grid: the centre of cell (0, 0, 0), and the cells that may
 /// be in it.
@@ -351,13 +351,20 @@ void fill(XmlReading& reading, const pugi::xml_node& node, const Solid& solid,
   const std::optional<Color> color = reading.color(node);
   const Attributes orientation = read_orientation(node);
   const std::size_t before = modules.size();
+  std::size_t work = 0;
   for (std::int32_t z = grid.low.z; z <= grid.high.z; ++z) {
     for (std::int32_t y = grid.low.y; y <= grid.high.y; ++y) {
+      if (work > kSolidWorkMax) {
+        reading.fail(node, fmt::format("<csg> has {} parts over {} cells, more than can be filled",
+                                       solid.node_count(), grid.count()));
+        return;
+      }
       for (std::int32_t x = grid.low.x; x <= grid.high.x; ++x) {
         const base::Cell cell = {x, y, z};
         const auto place = base::node_place(reading.document.extension.lattice, cell);
-        if (solid.contains({place[0] + grid.origin[0], place[1] + grid.origin[1],
-                            place[2] + grid.origin[2]}) &&
+        if (solid.contains(
+                {place[0] + grid.origin[0], place[1] + grid.origin[1], place[2] + grid.origin[2]},
+                work) &&
             !taken.contains(cell)) {
           modules.push_back({cell, false, color, orientation});
         }
@@ -394,11 +401,6 @@ void read_csg(XmlReading& reading, const pugi::xml_node& node) {
     return;
   }
   const SolidGrid grid = lay(reading, node, solid.value());
-  if (grid.count() * static_cast<double>(solid.value().node_count()) > kSolidWorkMax) {
-    reading.fail(node, fmt::format("<csg> has {} parts over {} cells, more than can be filled",
-                                   solid.value().node_count(), grid.count()));
-    return;
-  }
   fill(reading, node, solid.value(), grid);
 }
 
