@@ -73,7 +73,7 @@ class Solid {
     std::vector<std::size_t> children;
   };
 
-  /// To be called when all parts are there.
+  /// Finds the boxes, when all parts are there.
   void make_boxes();
   bool contains(std::size_t index, const Point& point, std::size_t& visited) const;
   bool contains_any(const Node& node, const Point& point, std::size_t& visited) const;
