@@ -46,6 +46,7 @@ const look = (page) =>
     const { app, bench, player, timeline } = globalThis.holdfast;
     const { robot } = bench;
     const { view } = app;
+    app.unpin();
     app.point(undefined);
     const one = (id) => document.getElementById(id);
     const textOf = (id) => (one(id).hidden ? '' : one(id).innerText.trim());
@@ -73,7 +74,8 @@ const look = (page) =>
     const rows = [...one('figures').children].map((row) => row.innerText);
     const fields = [...document.querySelectorAll('#surroundings input, #material input')]
       .map((input) => [input.ariaLabel ?? input.closest('label').textContent, input.type === 'checkbox' ? input.checked : input.ariaInvalid ? 'refused' : input.value])
-      .filter(([label]) => !/^(Obstacles|Downhill)/.test(label));
+      // The level of a floor that is not there is in no file.
+      .filter(([label]) => !/^(Obstacles|Downhill)/.test(label) && (robot.hasFloor || label !== 'Ground at z'));
     const { answer, problem } = app.finding ?? {};
     return {
       structure,
@@ -128,6 +130,16 @@ async function expectTaken(field, name, text) {
   const shown = Number(await field.inputValue());
   assert.ok(Math.abs(shown - typed) <= 1e-3 * Math.abs(typed), `${name}: ${text} is typed, the field shows ${shown}`);
 }
+
+/** Where the robot is cut open, as a share of its size. */
+const setCut = (page, share) =>
+  page.evaluate((part) => {
+    const slider = document.getElementById('cut-at');
+    if (!slider.hidden) {
+      slider.value = String(Number(slider.min) + part * (slider.max - slider.min));
+      slider.dispatchEvent(new Event('input'));
+    }
+  }, share);
 
 /** What a user can do, by the name that a failure shows; each gets the page and a source of chance. */
 const DEEDS = {
@@ -281,6 +293,30 @@ const DEEDS = {
       }
     }, pick([0, 10, 30]));
   },
+  async look(page, { pick, chance }) {
+    const how = pick(['xray', 'from', 'cut', 'present']);
+    if (how === 'xray') {
+      await press(page, 'xray');
+    } else if (how === 'present') {
+      await press(page, pick(['present', 'present-end']));
+      await press(page, 'present-end');
+    } else if (how === 'from') {
+      await page.evaluate((side) => document.querySelector(`[data-from=${side}]`).click(), pick(['oblique', 'front', 'right', 'top']));
+    } else {
+      await page.selectOption('#cut', pick(['', '', 'above', 'front', 'right']));
+      await setCut(page, chance());
+    }
+    return how;
+  },
+  async challenge(page, { chance }) {
+    await press(page, 'gallery-open');
+    await page.evaluate((where) => {
+      const all = document.querySelectorAll('[data-challenge]');
+      all[Math.floor(where * all.length)]?.click();
+    }, chance());
+    await page.waitForFunction(() => !document.querySelector('dialog[open]'));
+    await settled(page);
+  },
   worst: (page) => page.evaluate(() => globalThis.holdfast.app.seeWorst()),
   async colours(page, { pick }) {
     await page.selectOption('#scale', pick(['paper', 'cividis']));
@@ -293,16 +329,21 @@ const WEIGHTS = { edit: 8, put: 2, 'take away': 2, type: 8, undo: 4, redo: 2, re
 const CHOSEN = process.env.HOLDFAST_DEEDS?.split(',') ?? Object.keys(DEEDS);
 const NAMES = CHOSEN.flatMap((name) => Array(WEIGHTS[name] ?? 1).fill(name));
 
-/** What the text of a recording has to count: what is undone is none; undone beyond its beginning it is a change as others are. */
+/** What the text of a recording has to count: undoing what came last is none, undoing beyond its beginning a change as others are. */
 class Count {
-  changes = [];
+  constructor(existing) {
+    this.states = [existing];
+  }
 
-  follow(deed) {
-    const isBack = deed === 'undo';
-    if (isBack && this.changes.at(-1) === 'on') {
-      this.changes.pop();
+  get length() {
+    return this.states.length - 1;
+  }
+
+  follow(deed, existing) {
+    if (deed === 'undo' && this.states.at(-2) === existing) {
+      this.states.pop();
     } else {
-      this.changes.push(isBack ? 'back' : 'on');
+      this.states.push(existing);
     }
   }
 }
@@ -316,6 +357,14 @@ async function expectFresh(page, fresh, seen, where) {
   await dropFile(fresh, 'walk.json', text);
   await fresh.waitForFunction((source) => globalThis.holdfast.bench.robot.base === source, text);
   await settled(fresh);
+  await fresh.selectOption('#cut', await page.inputValue('#cut'));
+  await setCut(fresh, await page.evaluate(() => {
+    const { min, max, value } = document.getElementById('cut-at');
+    return max > min ? (value - min) / (max - min) : 0;
+  }));
+  if ((await page.getAttribute('#xray', 'aria-pressed')) !== (await fresh.getAttribute('#xray', 'aria-pressed'))) {
+    await press(fresh, 'xray');
+  }
   const other = await look(fresh);
   // What was refused still stands in its field.
   const fields = other.panel.fields.map(([label, value], k) => [label, seen.panel.fields[k][1] === 'refused' ? 'refused' : value]);
@@ -399,15 +448,15 @@ async function walk(names, actions) {
     await settled(page);
     const seen = await look(page);
     expectConsistent(seen, where);
-    const mayReplace = ['open', 'lattice', 'undo', 'redo'].includes(name);
+    const mayReplace = ['open', 'challenge', 'lattice', 'undo', 'redo'].includes(name);
     if (name === 'record') {
-      recorded = recorded ? undefined : new Count();
-    } else if (name === 'open' || (mayReplace && seen.recording === undefined)) {
+      recorded = recorded ? undefined : new Count(seen.existing);
+    } else if (name === 'open' || name === 'challenge' || (mayReplace && seen.recording === undefined)) {
       recorded = undefined;
     } else if (recorded && seen.existing !== before.existing) {
-      recorded.follow(name);
+      recorded.follow(name, seen.existing);
     }
-    assert.equal(seen.recording, recorded?.changes.length, `${where}: steps that are recorded`);
+    assert.equal(seen.recording, recorded?.length, `${where}: steps that are recorded`);
     limitOf = seen.limit === '' ? undefined : (limitOf ?? JSON.stringify(seen.structure));
     assert.ok(seen.limit === '' || limitOf === JSON.stringify(seen.structure), `${where}: a limit load of another robot`);
     if (seen.count > 0) {

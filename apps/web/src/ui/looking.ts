@@ -79,6 +79,10 @@ class Cut {
     if (cut && bounds) {
       this.slider.min = String(bounds.low[cut.axis]);
       this.slider.max = String(bounds.high[cut.axis]);
+      // The plane stays within a robot that has become smaller.
+      if (this.app.view.section && this.app.view.section.at !== Number(this.slider.value)) {
+        this.change();
+      }
     }
   }
 
