@@ -134,7 +134,7 @@ expect_line out '^UNDECIDED'
 expect_line out "the robot's own verdict: bending may matter"
 expect_line out 'robot +undecided'
 for mode in --next --steps --stages; do
-  expect_exit 0 simulate pole.json $mode
+  expect_exit 2 simulate pole.json $mode
   expect_line out 'undecided'
 done
 expect_line own.svg '</svg>'

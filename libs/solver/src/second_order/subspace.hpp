@@ -51,7 +51,7 @@ class Subspace {
   /// at least.
   Eigenpair best() const;
 
-  /// The same combination of a part of the motions.
+  /// Combines a part of the motions in these shares.
   Vecs combination(const Eigenpair& shares, Vecs Motion::*part) const;
 
   /// Keeps the best motion alone.
