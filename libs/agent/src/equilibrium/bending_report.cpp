@@ -47,12 +47,15 @@ void add_facet(const Workspace& ws, const Facet& facet, bool is_bonded, const Ve
   for (std::size_t i = 0; i < force.size(); ++i) {
     sums.energy += force[i] * (force[i] - trial[i]) / law.stiffness[i];
   }
+  const bool is_unilateral = law.law == mechanics::ContactLaw::kUnilateral;
   if (!is_bonded && !facet.state.pressed) {
+    const bool holds = is_unilateral && facet.is_held;  // Sideways, though it is open.
+    report.flags = static_cast<std::uint8_t>(report.flags | (holds ? kHasTilting : 0U));
     return;
   }
   report.number += 2;
   sums.moments += bending_energy(law.stiffness, force[3], force[4]);
-  const bool slides = !is_bonded && law.law == mechanics::ContactLaw::kUnilateral && !facet.is_held;
+  const bool slides = !is_bonded && is_unilateral && !facet.is_held;
   report.flags = static_cast<std::uint8_t>(report.flags | (slides   ? kHasSliding
                                                            : sticks ? kHasSupport
                                                                     : kHasTilting));

@@ -315,7 +315,7 @@ inline constexpr std::uint8_t kStepTold = 32;  ///< kPlan: a step was told.
 inline constexpr std::uint8_t kDenied = 2;     ///< kWord: a word does not fit this module.
 inline constexpr std::uint8_t kSplit = 4;  ///< kWord: the robot would be in pieces, in stage mask.
 inline constexpr std::uint8_t kHasSupport = 1;  ///< kBend: a module is fixed, or a facet sticks.
-inline constexpr std::uint8_t kHasTilting = 2;  ///< kBend: a facet tilts.
+inline constexpr std::uint8_t kHasTilting = 2;  ///< kBend: a facet tilts, or is held open.
 inline constexpr std::uint8_t kHasSliding = 4;  ///< kBend: a facet presses and is not held.
 inline constexpr std::uint8_t kNewLinks = 1;    ///< kStage: other connections are off than before.
 
