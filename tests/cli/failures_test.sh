@@ -125,6 +125,56 @@ expect_line out '^  cascade     breaks in 1 round; 5 of 6 modules fall$'
 expect_line out '^              1: \(0,0,0\)-\(1,0,0\) at 1\.00.* breaks; 5 modules fall$'
 expect_line arm.svg 'falls after the break'
 expect_line arm_report.json '"outcome": ?"stands"'
+# How they fall, as a series: rigid, down to the floor at -60 mm; what is fixed stays.
+expect_exit 1 check arm.json --cascade --vtk fall.pvd
+expect_line fall.pvd 'timestep="0" part="0" file="fall_0\.vtu"'
+python3 - <<'END' || fault "fall.pvd"
+import glob, re, struct, zlib
+
+
+def numbers(data, name, letter):
+    begin = data.index(b'encoding="raw">\n_') + len(b'encoding="raw">\n_')
+    offset = int(re.search(rb'Name="' + name + rb'"[^>]*offset="(\d+)"', data)[1])
+    here = data[begin + offset:]
+    blocks, = struct.unpack('<Q', here[:8])
+    sizes = struct.unpack(f'<{blocks}Q', here[24:24 + 8 * blocks])
+    raw, at = b'', 24 + 8 * blocks
+    for size in sizes:
+        raw += zlib.decompress(here[at:at + size])
+        at += size
+    return struct.unpack(f'<{len(raw) // struct.calcsize(letter)}{letter}', raw)
+
+
+def corners(frame):
+    data = open(f'fall_{frame}.vtu', 'rb').read()
+    rest, move = numbers(data, b'Points', 'd'), numbers(data, b'displacement_mm', 'd')
+    sums = [a + b for a, b in zip(rest, move)]
+    return [sums[3 * i:3 * i + 3] for i in range(8 * 6)], data
+
+
+def distances(points):
+    return [sum((a - b) ** 2 for a, b in zip(p, q)) ** 0.5 for p in points[8:] for q in points[8:]]
+
+
+count = len(glob.glob('fall_*.vtu'))
+assert 20 < count == open('fall.pvd').read().count('<DataSet')
+start, data = corners(0)
+assert numbers(data, b'body', 'd')[:6] == (-1, 0, 0, 0, 0, 0)
+assert numbers(data, b'broken', 'B').count(1) == 1
+for frame in range(count):
+    points, _ = corners(frame)
+    assert points[:8] == start[:8]
+    assert max(abs(a - b) for a, b in zip(distances(points), distances(start))) < 1e-3
+    assert min(p[2] for p in points) > -60.5
+# In the air it has fallen by g t^2 / 2.
+time = 3 * 0.016
+fallen = start[8][2] - corners(3)[0][8][2]
+assert abs(fallen - 9810 * time ** 2 / 2) < 1, fallen
+assert min(p[2] for p in points) < -59
+END
+expect_exit 65 check cube.json --cascade --vtk none.pvd
+expect_line err 'no module falls, so there is no fall to be written'
+expect_exit 64 check arm.json --cascade --vtk fall.pvd --json fall_1.vtu
 expect_exit 0 check cube.json --cascade
 expect_line out '^  cascade     nothing breaks and nothing falls$'
 expect_exit 1 check arm.json --cascade --deformed

@@ -20,7 +20,7 @@ complete -c holdfast -n '__fish_seen_subcommand_from check' -l title -x -d 'Titl
 complete -c holdfast -n '__fish_seen_subcommand_from check' -l grey -d 'Draw without colours; the darker the more load'
 complete -c holdfast -n '__fish_seen_subcommand_from check' -l view -x -a 'iso front side top' -d 'Look from there: iso, front, side, top, or the azimuth and elevation of the eye, in degrees [default: iso]'
 complete -c holdfast -n '__fish_seen_subcommand_from check' -l no-legend -d 'Leave out the legend'
-complete -c holdfast -n '__fish_seen_subcommand_from check' -l vtk -r -F -d 'Write a .vtu file for ParaView; with --deformed and a .pvd name the whole path'
+complete -c holdfast -n '__fish_seen_subcommand_from check' -l vtk -r -F -d 'Write a .vtu file for ParaView; with a .pvd name and --deformed the whole path, with --cascade the fall'
 complete -c holdfast -n '__fish_seen_subcommand_from check' -l html -r -F -d 'Write a page to look at in a browser, with the report [not with --deformed]'
 complete -c holdfast -n '__fish_seen_subcommand_from check' -l certificate -r -F -d 'Write the proof for holdfast-checker; implies --prove [not with --deformed]'
 complete -c holdfast -n '__fish_seen_subcommand_from check' -l prove -d 'Prove the largest load ratio; a verdict that is not proved is undecided [not with --deformed]'

@@ -13,6 +13,7 @@
 #include "file_clash.hpp"
 #include "holdfast/cascade.hpp"
 #include "holdfast/deformed_series.hpp"
+#include "holdfast/falling_pieces.hpp"
 #include "holdfast/trial.hpp"
 #include "lose_one_options.hpp"
 #include "page.hpp"
@@ -57,13 +58,18 @@ struct CheckArguments {
     return {{"--json", json, FileFormat::kJson},
             {"--csv", csv, FileFormat::kCsv},
             {"--svg", figure.path, FileFormat::kFigure},
-            {"--vtk", vtk, writes_series() ? FileFormat::kPvd : FileFormat::kVtu},
+            {"--vtk", vtk, writes_series() || writes_fall() ? FileFormat::kPvd : FileFormat::kVtu},
             {"--html", html, FileFormat::kHtml},
             {"--certificate", certificate}};
   }
 
   /// Whether --vtk is the whole path of the deformed shape.
   bool writes_series() const { return is_deformed_wanted && has_ending(vtk, ".pvd"); }
+
+  /// Whether --vtk is how what breaks falls.
+  bool writes_fall() const {
+    return is_cascade_wanted && !is_deformed_wanted && has_ending(vtk, ".pvd");
+  }
 };
 
 /// Goes through the files of one run and keeps count.
@@ -268,7 +274,9 @@ class CheckRun {
                               : picture_svg(structure, result, figure);
         });
     bad_count_ += is_drawn ? 0 : 1;
-    if (!options_.vtk.empty() && !options_.writes_series()) {
+    if (options_.writes_fall()) {
+      write_fall(structure, result, *more.cascade);
+    } else if (!options_.vtk.empty() && !options_.writes_series()) {
       write(options_.vtk, [&](std::ostream& out) {
         write_picture_vtu(out, structure, result, report_options(options_.vtk, more.numbers));
       });
@@ -278,6 +286,15 @@ class CheckRun {
     }
     if (!options_.certificate.empty()) {
       write_certificate(structure, result);
+    }
+  }
+
+  void write_fall(const Structure& structure, const CheckResult& result,
+                  const plan::Cascade& cascade) {
+    if (const auto error = write_fall_series(options_.vtk, structure, result.assessment, cascade,
+                                             options_.thread_count)) {
+      ++bad_count_;
+      print_error(*error, options_.vtk);
     }
   }
 
@@ -460,7 +477,7 @@ int run(CheckArguments options) {
   }
   refuse_clashes(options.files, options.outputs());
   const std::array others = {options.files.front(), options.json, options.csv, options.figure.path};
-  if (options.writes_series()) {
+  if (options.writes_series() || options.writes_fall()) {
     refuse_series(options.vtk, others);
   }
   return CheckRun(options).run();
@@ -507,7 +524,8 @@ Command add_check(CLI::App& app) {
              "Write a table, a line for each connection with its loads");
   add_figure(*command, options->figure, "Draw the structure and its loads");
   add_output(*command, "--vtk", options->vtk,
-             "Write a .vtu file for ParaView; with --deformed and a .pvd name the whole path");
+             "Write a .vtu file for ParaView; with a .pvd name and --deformed the whole path, "
+             "with --cascade the fall");
   add_output(*command, "--html", options->html,
              "Write a page to look at in a browser, with the report");
   add_output(*command, "--certificate", options->certificate,

@@ -158,17 +158,6 @@ class SimulateRun {
            !options_.story.empty();
   }
 
-  /// Says of a robot that bends, of which only the verdict on all of it is compared with the exact
-  /// one, that its modules do not know it.
-  void note_linear_theory(const io::Document& document) const {
-    if (io::is_modulus_stated(document)) {
-      const std::string note =
-          "the elastic modulus is stated, and the modules' program knows linear theory alone: it "
-          "may call safe what buckles, which holdfast steps and holdfast next do not";
-      print_notes(std::span(&note, 1), options_.file);
-    }
-  }
-
   int run_next() {
     if (has_happenings()) {
       throw UsageError(
@@ -179,7 +168,6 @@ class SimulateRun {
     if (!structure) {
       return fail(structure.error(), options_.file);
     }
-    note_linear_theory(structure.value().document);
     const auto simulated = simulate_next(
         structure.value(),
         {.simulation = simulation_, .progress = [this](std::size_t done, std::size_t count) {
@@ -225,7 +213,6 @@ class SimulateRun {
     if (!file) {
       return fail(file.error(), options_.file);
     }
-    note_linear_theory(file.value().document);
     return options_.judges_stages ? run_stages(file.value()) : run_kept(file.value());
   }
 

@@ -16,7 +16,7 @@
 namespace holdfast::agent::test {
 
 /// Orders by operation: 1 to 5, 12 to 31.
-inline constexpr std::array<std::string_view, 25> kGoldenOrders = {
+inline constexpr std::array<std::string_view, 26> kGoldenOrders = {
     "05 01 02 01 00 00 fe ff ff 03 00 00",
     "05 02 01 00 02 00 04 00 08 00 10 00 20 00 00 00 00 00",
     "05 03 c0 bd f0 40 42 0f 00 00 00",
@@ -44,7 +44,8 @@ inline constexpr std::array<std::string_view, 25> kGoldenOrders = {
     "05 1e 14 2c 01 00 00 80 3e 00 00 00 bf 00 00 80 be 00 00 80 3f 00 00 00 c0 00 00 00 3f "
     "00 00 c0 3f",
     "05 1f 01 07 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 80 3e 00 00 80 bf 00 00 00 00 "
-    "00 00 40 40"};
+    "00 00 40 40",
+    "05 20"};
 
 inline std::string_view golden_order(wire::Operation operation) {
   return *std::ranges::find_if(kGoldenOrders, [&](std::string_view text) {
@@ -54,7 +55,7 @@ inline std::string_view golden_order(wire::Operation operation) {
   });
 }
 
-inline constexpr std::array<std::string_view, 25> kGoldenReports = {
+inline constexpr std::array<std::string_view, 26> kGoldenReports = {
     "06 01 21 00 01 01 00 00 fe ff ff 03 00 00",
     "06 02 87",
     "06 03 1d 00 00 00 3a 00 00 00 fd ff ff ff ff ff ff ff 05 00 00 00 00 00 00 00 07 00 00 00 00 "
@@ -89,7 +90,9 @@ inline constexpr std::array<std::string_view, 25> kGoldenReports = {
     "00 00 00 00 00 00 40 40 00 00 00 00 00 00 80 3f 00 00 00 c0 00 00 00 3f 00 00 80 3e",
     "06 1f 00 00 80 3e 00 00 c0 3f 00 00 ef cd ab 89 08 00 00 80 3f 00 00 80 30 00 00 80 be "
     "00 00 00 00 00 00 40 40 00 00 00 00 00 00 c0 3f 00 00 80 bf 00 00 00 00 00 00 00 40 "
-    "02 01 00 00 ff ff ff 00 00 00 fd ff ff 01 00 00 00 00 00 01 00 00 fe ff ff 03 00 00 94"};
+    "02 01 00 00 ff ff ff 00 00 00 fd ff ff 01 00 00 00 00 00 01 00 00 fe ff ff 03 00 00 94",
+    "06 20 03 1d 00 00 00 3c 00 00 00 00 00 c0 3f 00 00 00 3f 00 00 80 3e 00 00 00 40 "
+    "00 00 80 3f"};
 
 /// Types 7, 8, 9, 11 to 15 and 20, label 5, with the reals 1, -2, 0.5, 0.25, -1, 1.5.
 inline constexpr std::array<std::string_view, 9> kGoldenVectors = {

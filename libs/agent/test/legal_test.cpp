@@ -146,7 +146,7 @@ TEST(Legal, verdicts_have_a_reason_of_theirs) {
       message[2] = static_cast<std::uint8_t>(verdict);
       message[3] = static_cast<std::uint8_t>(reason);
       const bool is_sure = 1 <= verdict && verdict <= 3 && reason == verdict;
-      const bool is_told = (4 <= reason && reason <= 11) || (14 <= reason && reason <= 18);
+      const bool is_told = (4 <= reason && reason <= 11) || (14 <= reason && reason <= 19);
       const bool is_undecided = verdict == 4 && is_told;
       EXPECT_EQ(is_legal(message), is_sure || is_undecided) << to_hex(message);
     }

@@ -11,6 +11,8 @@
 #include <sstream>
 #include <string>
 
+#include "holdfast/agent/messages/order.hpp"
+
 namespace holdfast::agent {
 namespace {
 
@@ -51,7 +53,8 @@ TEST(Operations, exchange_nothing_where_the_document_has_a_dash) {
        {Operation::kPlan, Operation::kHosts, Operation::kMass, Operation::kAngles, Operation::kHold,
         Operation::kCorners, Operation::kLoads, Operation::kVerdict, Operation::kFactor,
         Operation::kForget, Operation::kRenew, Operation::kClose, Operation::kWord,
-        Operation::kStage, Operation::kShape, Operation::kNext, Operation::kSeek}) {
+        Operation::kStage, Operation::kShape, Operation::kNext, Operation::kSeek,
+        Operation::kBend}) {
     EXPECT_EQ(counts_of(operation, 0xff), Counts{}) << info(operation).name;
   }
 }

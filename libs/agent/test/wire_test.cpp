@@ -117,6 +117,7 @@ TEST(Wire, orders_are_these_bytes) {
        .reals = {0.25F, 0.5F, 2}},
       {.operation = Operation::kSeek, .mass = static_cast<std::int32_t>(0x89abcdefU)}};
   orders.insert(orders.end(), kDeflatedOrders.begin(), kDeflatedOrders.end());
+  orders.push_back({.operation = Operation::kBend});
   ASSERT_EQ(orders.size(), kGoldenOrders.size());
   for (std::size_t i = 0; i < orders.size(); ++i) {
     EXPECT_EQ(order_text(orders[i]), kGoldenOrders[i]);
@@ -189,6 +190,10 @@ TEST(Wire, reports_are_these_bytes) {
       {.count = 2, .number = 0x89abcdef}};
   const auto deflated = deflated_reports(feet, corners);
   reports.insert(reports.end(), deflated.begin(), deflated.end());
+  reports.push_back({.flags = kHasSupport | kHasTilting,
+                     .count = 29,
+                     .number = 60,
+                     .reals = {1.5F, 0.5F, 0.25F, 2, 1}});
   ASSERT_EQ(reports.size(), kGoldenReports.size());
   for (std::size_t i = 0; i < reports.size(); ++i) {
     EXPECT_EQ(report_text(kOperations[i].operation, reports[i]), kGoldenReports[i]);

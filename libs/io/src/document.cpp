@@ -20,11 +20,6 @@ void take_number(const model::MaterialParameter& parameter, double value, Docume
   }
 }
 
-bool is_modulus_stated(const Document& document) {
-  return document.is_default_modulus_stated ||
-         document.material.elastic_modulus_mpa != model::Material{}.elastic_modulus_mpa;
-}
-
 bool is_said(const model::MaterialParameter& parameter, const model::Material& defaults,
              const Document& document) {
   return document.material.*parameter.value != defaults.*parameter.value ||

@@ -179,6 +179,7 @@ agent::Setup make_setup(const model::Robot& robot, const SimulationOptions& opti
   setup.ratio_per_nmm = bounds.per_nmm;
   setup.ratio_per_energy_root = bounds.per_energy_root;
   setup.slack_bits = bounds.slack_bits;
+  setup.judges_bending = robot.is_modulus_stated() && !options.only_one_sweep;
   setup.lattice = robot.lattice();
   const auto plane = has_map ? find_support_plane(robot, options.step_end) : std::nullopt;
   if (plane) {

@@ -19,14 +19,28 @@ constexpr std::size_t kUnilateralCountMax = 6000;
 constexpr std::size_t kUnilateralFillMax = 16;
 
 /// A factorization beside multigrid takes no longer than multigrid itself with so many blocks that
-/// fill in and products of two blocks per node. Robots of many modules with so many connections
-/// each are not tried, as even the order of elimination takes long and then fills in more.
+/// fill in and products of two blocks per node. Robots of many joints with so many connections
+/// each are not tried, as even the order of elimination takes long and then fills in more. Joints
+/// are modules with three connections or more: all others go first and leave a connection less.
 constexpr std::size_t kBesideFillMax = 16;
 constexpr std::size_t kBesideProductMax = 100;
 constexpr std::size_t kBesideCountTried = 5'000;
 constexpr double kBesideConnectionsMax = 2.0;
 
 constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max();
+
+/// Whether a robot has many joints with many connections.
+bool has_dense_joints(const model::Robot& robot) {
+  std::size_t joints = 0;
+  for (std::size_t i = 0; i < robot.modules().size(); ++i) {
+    const auto beside = robot.connected()[i];
+    joints += std::ranges::count_if(beside, [](auto other) { return other >= 0; }) > 2 ? 1U : 0U;
+  }
+  const std::size_t others = robot.modules().size() - joints;
+  return joints > kBesideCountTried &&
+         static_cast<double>(robot.connections().size()) >
+             static_cast<double>(others) + kBesideConnectionsMax * static_cast<double>(joints);
+}
 
 }  // namespace
 
@@ -68,13 +82,10 @@ void SystemChoice::prepare(mechanics::ContactLaw law) {
 }
 
 std::unique_ptr<DirectSystem> SystemChoice::make_direct_beside() const {
-  const std::size_t count = robot_.free_count();
-  const auto connection_count = static_cast<double>(robot_.connections().size());
-  const bool is_dense = connection_count > kBesideConnectionsMax * static_cast<double>(count);
-  if (!multigrid_ || options_.method == Method::kMultigrid ||
-      (count > kBesideCountTried && is_dense)) {
+  if (!multigrid_ || options_.method == Method::kMultigrid || has_dense_joints(robot_)) {
     return nullptr;
   }
+  const std::size_t count = robot_.free_count();
   EquilibriumOptions options = options_;
   options.fill_max = std::min(options.fill_max, kBesideFillMax);
   return DirectSystem::make(robot_, options, kBesideProductMax * count);

@@ -5,6 +5,7 @@
 #include "algebra/scalar.hpp"
 #include "algebra/tolerances.hpp"
 #include "conductor/orders.hpp"
+#include "holdfast/agent/conductor/bending.hpp"
 #include "holdfast/agent/features.hpp"
 #include "messages/resume_masks.hpp"
 
@@ -74,11 +75,20 @@ Order Conductor::ask(Order order) {
   if (order.operation == Operation::kVerdict) {
     answer.verdict = order.answer.verdict;
     answer.reason = order.answer.reason;
-    order = order_of(faces.is_due(whole, answer.verdict) ? Operation::kShape : Operation::kVerdict);
+    order = order_of(is_bending_due()                      ? Operation::kBend
+                     : faces.is_due(whole, answer.verdict) ? Operation::kShape
+                                                           : Operation::kVerdict);
     order.answer = answer;
   }
   asked = order.operation != Operation{} ? order.operation : asked;
   return order;
+}
+
+/// Is bending asked about before this verdict? Not again, and not where there is no new
+/// equilibrium.
+bool Conductor::is_bending_due() const {
+  return whole.judges_bending && answer.verdict == Verdict::kSafe && asked != Operation::kBend &&
+         asked != Operation::kRenew && asked != Operation::kWord && asked != Operation::kStage;
 }
 
 Order Conductor::begin(const Setup& setup, const base::Cell& root, std::uint32_t module_count,
@@ -89,7 +99,9 @@ Order Conductor::begin(const Setup& setup, const base::Cell& root, std::uint32_t
   whole.depth = depth;
   whole.wave_depth = depth;
   whole.effort.method = setup.method;
-  faces.enter(lent.judges_faces);
+  whole.judges_bending = setup.judges_bending;
+  // They judge by linear theory.
+  faces.enter(lent.judges_faces && !setup.judges_bending);
   iterations.enter(setup, lent.deflation);
   if constexpr (kHasAllMethods) {
     whole.may_have_fronts = lent.has_fronts;
@@ -139,6 +151,8 @@ Order Conductor::choose(const Setup& setup, const Report& report, const Planned&
       return after_corners(setup, report.corners.stable);
     case Operation::kLoads:
       return after_loads(setup, report);
+    case Operation::kBend:
+      return kIsGeneral ? after_bend(setup, report) : Order{};
     case Operation::kShape:
       if (const Order next = kKeepsAnswers ? faces.after_shape(whole, report, answer.verdict,
                                                                iterations.accuracy.error)
@@ -472,6 +486,14 @@ Order Conductor::decide() {
       law.verdict(whole, static_cast<double>(answer.load_ratio_max), iterations.accuracy.ratio,
                   iterations.accuracy.error, seeking.other_fails());
   return verdict_order(found.verdict, found.reason);
+}
+
+/// A robot that linear theory calls safe may be undecided.
+Order Conductor::after_bend(const Setup& setup, const Report& report) {
+  const double ratio = static_cast<double>(answer.load_ratio_max) + iterations.accuracy.error;
+  return is_bending_small(setup, whole, report, ratio)
+             ? verdict_order(answer.verdict, answer.reason)
+             : undecided(Reason::kSecondOrder);
 }
 
 // ---- From one verdict to the next.

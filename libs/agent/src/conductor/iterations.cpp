@@ -40,20 +40,6 @@ constexpr std::uint32_t kStrayShare = 2;
 constexpr std::uint16_t kClusterDegreeMin = 16;
 constexpr std::uint16_t kClusterDegreeShare = 5;
 
-/// The error of any load ratio for an error e of the displacements with e K e = 1. One beam stores
-/// fz^2 / (E A/L) + m^2 / (E I/L) and more, all of it part of e K e, so by Cauchy and Schwarz
-/// (2 m/a + fz)^2 <= (E A/L + 4 E I / (L a^2)) e K e. With that the bound holds for any robot.
-double ratio_per_energy_root(const Setup& setup) {
-  if (setup.ratio_per_energy_root > 0) {
-    return setup.ratio_per_energy_root;
-  }
-  const double bend = setup.beam.bend_x > setup.beam.bend_y ? setup.beam.bend_x : setup.beam.bend_y;
-  const double strength = setup.strength_vertical_n < setup.strength_lateral_n
-                              ? setup.strength_vertical_n
-                              : setup.strength_lateral_n;
-  return square_root(setup.beam.axial + bend / (setup.facet_mm * setup.facet_mm)) / strength;
-}
-
 /// An iteration is taken for the last one if the error that is expected before it is no more than
 /// this many times what is asked for.
 constexpr double kLastShare = 3;
@@ -71,6 +57,19 @@ bool is_last(const Whole& whole, double predicted, double target) {
 }
 
 }  // namespace
+
+/// One beam stores fz^2 / (E A/L) + m^2 / (E I/L) and more, all of it part of e K e, so by Cauchy
+/// and Schwarz (2 m/a + fz)^2 <= (E A/L + 4 E I / (L a^2)) e K e.
+double ratio_per_energy_root(const Setup& setup) {
+  if (setup.ratio_per_energy_root > 0) {
+    return setup.ratio_per_energy_root;
+  }
+  const double bend = setup.beam.bend_x > setup.beam.bend_y ? setup.beam.bend_x : setup.beam.bend_y;
+  const double strength = setup.strength_vertical_n < setup.strength_lateral_n
+                              ? setup.strength_vertical_n
+                              : setup.strength_lateral_n;
+  return square_root(setup.beam.axial + bend / (setup.facet_mm * setup.facet_mm)) / strength;
+}
 
 bool needs_forces(const Setup& setup, const Whole& whole) {
   return whole.is_uneven() || setup.has_friction;

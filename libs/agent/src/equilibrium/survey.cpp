@@ -4,6 +4,7 @@
 
 #include "algebra/scalar.hpp"
 #include "equilibrium/beams.hpp"
+#include "equilibrium/bending_report.hpp"
 #include "equilibrium/kept_changes.hpp"
 #include "holdfast/agent/cells/feet.hpp"
 #include "holdfast/agent/features.hpp"
@@ -419,6 +420,8 @@ Report survey_report(Workspace& ws, const Announcements& announcements, const Or
       return corners_report(ws);
     case Operation::kLoads:
       return loads_report(ws);
+    case Operation::kBend:
+      return kIsGeneral ? bending_report(ws) : Report{};
     case Operation::kClose: {
       if constexpr (!kKeepsAnswers) {
         return {};

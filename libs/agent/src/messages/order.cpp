@@ -137,6 +137,18 @@ void merge_loads(Report& into, const Report& from) {
   into.number += from.number;
 }
 
+/// Sums, and the least margin.
+void merge_bending(Report& into, const Report& from) {
+  into.flags = static_cast<std::uint8_t>(into.flags | from.flags);
+  into.count += from.count;
+  into.number += from.number;
+  const float margin = -larger(-into.reals[3], -from.reals[3]);
+  for (std::size_t i = 0; i < into.reals.size(); ++i) {
+    into.reals[i] += from.reals[i];
+  }
+  into.reals[3] = margin;
+}
+
 /// An iteration's sums; of the two largest load ratios the larger one's place.
 void merge_last(Report& into, const Report& from) {
   Report worst = worst_of(into);
@@ -226,7 +238,7 @@ constexpr void connection_fields(auto& codec, base::Direction& direction,
 
 constexpr void answer_fields(auto& codec, Answer& answer) {
   codec.kind(answer.verdict, Verdict::kSafe, Verdict::kUndecided);
-  codec.kind(answer.reason, Reason::kNone, Reason::kFacesMismatch);
+  codec.kind(answer.reason, Reason::kNone, Reason::kSecondOrder);
   codec.require(is_reasoned(answer) && answer.reason != Reason::kNoAnswer &&
                 answer.reason != Reason::kNoAnchor);
   codec.real(answer.load_ratio_max);
@@ -385,6 +397,8 @@ constexpr void fields(auto& codec, Order& order) {
     case Operation::kSeek:
       codec.require(kHasAllMethods);
       return kHasAllMethods ? seek_fields(codec, order) : void();
+    case Operation::kBend:
+      return codec.require(kIsGeneral);
     case Operation::kCorners:
     case Operation::kLoads:
     case Operation::kFactor:
@@ -498,6 +512,13 @@ constexpr void shape_fields(auto& codec, Report& report) {
   byte_field(codec, report.mask, 0xff);
 }
 
+constexpr void bending_fields(auto& codec, Report& report) {
+  codec.flags(report.flags, kHasSupport | kHasTilting | kHasSliding);
+  codec.u32(report.count);
+  codec.u32(report.number);
+  real_fields(codec, report.reals);
+}
+
 /// What is in a report behind its operation.
 constexpr void fields(auto& codec, Operation operation, Report& report) {
   switch (operation) {
@@ -553,6 +574,8 @@ constexpr void fields(auto& codec, Operation operation, Report& report) {
     case Operation::kStage:
       codec.flags(report.flags, kNewLinks);
       return codec.u32(report.count);
+    case Operation::kBend:
+      return kIsGeneral ? bending_fields(codec, report) : void();
     case Operation::kBegin:
     case Operation::kFactor:
       return;
@@ -568,8 +591,10 @@ static_assert([] {
     Ruler up(kOrderAt);
     Report report;
     fields(up, row.operation, report);
-    const bool is_known = (kKeepsAnswers || row.operation < Operation::kRenew) &&
-                          (kHasAllMethods || row.operation != Operation::kSeek);
+    const bool is_known = row.operation == Operation::kBend
+                              ? kIsGeneral
+                              : (kKeepsAnswers || row.operation < Operation::kRenew) &&
+                                    (kHasAllMethods || row.operation != Operation::kSeek);
     if (is_known && (down.bytes() != row.order_bytes || up.bytes() != row.report_bytes)) {
       return false;
     }
@@ -660,6 +685,8 @@ void merge(Operation operation, Report& into, const Report& from) {
       return kKeepsAnswers ? merge_shape(into, from) : void();
     case Operation::kSeek:
       return kHasAllMethods ? merge_keys(into, from) : void();
+    case Operation::kBend:
+      return kIsGeneral ? merge_bending(into, from) : void();
     default:
       break;
   }
@@ -706,7 +733,8 @@ const char* name(Reason reason) {
       "the step as it was told does not fit the robot",
       "a facet may slip: it is pulled by more than its friction",
       "cells contradict: a module or an anchor is not where it was told",
-      "faces do not match: a module is turned, or a cable is crossed"};
+      "faces do not match: a module is turned, or a cable is crossed",
+      "bending may matter, and modules know linear theory alone"};
   return kNames[static_cast<std::size_t>(reason)];
 }
 

@@ -163,6 +163,9 @@ bool Sweep::is_in_course(const Workspace& ws, const Order& order) const {
     case Operation::kLoads:
     case Operation::kClose:
       return course_ >= Course::kElimination && course_ != Course::kAnswered;
+    case Operation::kBend:
+      return ws.setup.judges_bending && course_ >= Course::kElimination &&
+             course_ != Course::kAnswered;
     case Operation::kShape:
       return judges_faces(ws) && course_ >= Course::kWeighed && course_ != Course::kAnswered &&
              ws.planned.count() == 0;

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "holdfast/cascade.hpp"
@@ -25,5 +27,14 @@ struct FallingPieces {
 /// the spec.
 FallingPieces simulate_fall(const model::RobotSpec& spec, const model::Robot& robot,
                             const plan::Cascade& cascade);
+
+/// Writes that fall as a series for ParaView: `path`, a .pvd file, and beside it a .vtu file for
+/// each frame of FallingPieces::fall, without loads. `assessment` is what check() says of the
+/// structure. Errors: files that cannot be written; no module falls.
+[[nodiscard]] std::optional<base::Error> write_fall_series(const std::filesystem::path& path,
+                                                           const Structure& structure,
+                                                           const verdict::Assessment& assessment,
+                                                           const plan::Cascade& cascade,
+                                                           int thread_count = 0);
 
 }  // namespace holdfast

@@ -369,7 +369,8 @@ class Writer {
 
   base::Vec6<double> displacement(std::size_t module) const {
     const auto& all = assessment_.equilibrium.displacement;
-    return has_loads_ && all.size() == module_count_ ? all[module] : base::Vec6<double>{};
+    const bool is_known = has_loads_ || factor_;
+    return is_known && all.size() == module_count_ ? all[module] : base::Vec6<double>{};
   }
 
   /// Modules move as rigid bodies, their facets with them: u + theta x r, or at large rotations

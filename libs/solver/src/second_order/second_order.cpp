@@ -86,13 +86,13 @@ class Search {
       if (!run(options_.seed + attempt)) {
         break;
       }
-      const Subspace::Best best = subspace_.best();
+      const Eigenpair best = subspace_.best();
       buckling = {.answer = BucklingAnswer::kNone};
       if (best.value * kFactorMax < 1) {
         return buckling;
       }
       buckling = {
-          .answer = BucklingAnswer::kAtMost, .factor = 1 / best.value, .mode = best.motion.x};
+          .answer = BucklingAnswer::kAtMost, .factor = 1 / best.value, .mode = mode_of(best)};
       // A factor that is the smallest leaves a definite matrix below it.
       if (is_settled_ && system_.is_definite(beams_, (1 - kBelow) * buckling.factor) == true) {
         buckling.answer = BucklingAnswer::kFactor;
@@ -107,26 +107,32 @@ class Search {
     Buckling bound{.answer = BucklingAnswer::kAtMost,
                    .factor = std::numeric_limits<double>::infinity()};
     Vecs forces = first_forces(system_.robot(), options_.seed);
+    Eigenpair best;
     double before = 0;
     for (std::size_t step = 0; step < kManySteps && add(std::move(forces)); ++step) {
-      const Subspace::Best best = subspace_.best();
+      best = subspace_.best();
       const bool is_near = best.value * options_.factor_max * kNearFactor > 1;
       const bool is_over = !is_near || best.value - before < kChangeShare * best.value;
-      if (best.value * kFactorMax > 1) {
-        bound.factor = 1 / best.value;
-        bound.mode = best.motion.x;
-      }
       if (is_over) {
         break;
       }
       before = best.value;
       forces = subspace_.last().softening;
     }
+    if (best.value * kFactorMax > 1) {
+      bound.factor = 1 / best.value;
+      bound.mode = mode_of(best);
+    }
     return bound;
   }
 
  private:
   static constexpr std::uint64_t kAttemptsMax = 3;
+
+  Vecs mode_of(const Eigenpair& best) const {
+    return subspace_.combination(best, &Subspace::Motion::x);
+  }
+
   static constexpr double kBelow = 1e-5;
 
   /// Adds the motion under forces. Returns false if there is no more to add.
@@ -167,8 +173,9 @@ class Search {
 
   /// Whether S x - value K x is next to nothing in the best motion, in the norm of K^-1.
   bool is_converged() {
-    const Subspace::Best best = subspace_.best();
-    const Vecs left = sum(best.motion.softening, -best.value, best.motion.forces);
+    const Eigenpair best = subspace_.best();
+    const Vecs left = sum(subspace_.combination(best, &Subspace::Motion::softening), -best.value,
+                          subspace_.combination(best, &Subspace::Motion::forces));
     const auto x = solve_for(system_, left, kMotionTolerance);
     return x && dot_all(left, *x) <=
                     kResidualShare * kResidualShare * best.value * best.value + kNothing;

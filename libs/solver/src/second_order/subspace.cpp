@@ -115,20 +115,21 @@ void Subspace::take(Motion motion) {
   motions_.push_back(std::move(motion));
 }
 
-Subspace::Best Subspace::best() const {
-  const Eigenpair pair = largest_eigenpair(products_);
-  const std::size_t count = motions_.front().x.size();
-  Best best{.value = pair.value, .motion = {Vecs(count), Vecs(count), Vecs(count)}};
+Eigenpair Subspace::best() const { return largest_eigenpair(products_); }
+
+Subspace::Vecs Subspace::combination(const Eigenpair& shares, Vecs Motion::*part) const {
+  Vecs sum(motions_.front().x.size());
   for (std::size_t i = 0; i < motions_.size(); ++i) {
-    add_times(best.motion.x, pair.vector[i], motions_[i].x);
-    add_times(best.motion.forces, pair.vector[i], motions_[i].forces);
-    add_times(best.motion.softening, pair.vector[i], motions_[i].softening);
+    add_times(sum, shares.vector[i], motions_[i].*part);
   }
-  return best;
+  return sum;
 }
 
 void Subspace::restart() {
-  Motion motion = best().motion;
+  const Eigenpair shares = best();
+  Motion motion = {.x = combination(shares, &Motion::x),
+                   .forces = combination(shares, &Motion::forces),
+                   .softening = combination(shares, &Motion::softening)};
   motions_.clear();
   products_.clear();
   take(std::move(motion));

@@ -9,6 +9,15 @@
 
 namespace holdfast::solver {
 
+/// The largest eigenvalue of a symmetric matrix, given by its lower rows, and its eigenvector, by
+/// Jacobi's rotations.
+struct Eigenpair {
+  double value = 0;
+  std::vector<double> vector;
+};
+
+Eigenpair largest_eigenpair(const std::vector<std::vector<double>>& lower_rows);
+
 /// Motions of a robot, orthonormal by K, and the largest value of x . S x / x . K x among their
 /// combinations x (Rayleigh and Ritz), S = -K_G. That is never above the largest of all motions.
 class Subspace {
@@ -20,11 +29,6 @@ class Subspace {
     Vecs x;
     Vecs forces;     ///< K x
     Vecs softening;  ///< S x
-  };
-
-  struct Best {
-    double value = 0;
-    Motion motion;
   };
 
   std::size_t size() const { return motions_.size(); }
@@ -43,8 +47,12 @@ class Subspace {
     return true;
   }
 
-  /// The combination with the largest value; of one motion at least.
-  Best best() const;
+  /// The largest value, and the shares of the motions in the combination that has it; of one motion
+  /// at least.
+  Eigenpair best() const;
+
+  /// Combines a part of the motions in these shares.
+  Vecs combination(const Eigenpair& shares, Vecs Motion::*part) const;
 
   /// Keeps the best motion alone.
   void restart();
@@ -56,14 +64,5 @@ class Subspace {
   std::vector<Motion> motions_;
   std::vector<std::vector<double>> products_;  ///< x_i . S x_k for k <= i.
 };
-
-/// The largest eigenvalue of a symmetric matrix, given by its lower rows, and its eigenvector, by
-/// Jacobi's rotations.
-struct Eigenpair {
-  double value = 0;
-  std::vector<double> vector;
-};
-
-Eigenpair largest_eigenpair(const std::vector<std::vector<double>>& lower_rows);
 
 }  // namespace holdfast::solver

@@ -36,8 +36,9 @@ struct CubeSetup {
   std::int32_t support_z = 0;  ///< Modules in this layer rest on the ground.
   /// kElimination means: or kPolynomial, if the robot has too many loops.
   Method method = Method::kElimination;
-  /// Elimination and the polynomial alone, without rigid clusters and without further solutions:
-  /// for robots some of whose modules have no other method (features.hpp).
+  /// Elimination and the polynomial alone, without rigid clusters, without further solutions and
+  /// without a word on bending: for robots some of whose modules have no other method
+  /// (features.hpp).
   bool only_one_sweep = false;
   /// The next verdict begins from what is kept, where only a plan has changed or a
   /// module has come; else, and without it, from nothing.
@@ -64,6 +65,9 @@ struct GeneralSetup {
   double ratio_per_energy_root = 0;
   /// The bounds make 2 to the power of this more of the same forces than Eq. (17) would.
   std::uint8_t slack_bits = 0;
+  /// Is no robot `safe` whose bending may matter (conductor/bending.hpp)? Where the elastic modulus
+  /// is stated.
+  bool judges_bending = false;
 
   // Derived by prepare().
   mechanics::LatticeBeam<double> lattice_beam;
@@ -98,6 +102,7 @@ struct FloorSetup {
   static constexpr double ratio_per_nmm = 0;
   static constexpr double ratio_per_energy_root = 0;
   static constexpr std::uint8_t slack_bits = 0;
+  static constexpr bool judges_bending = false;
 
   // NOLINTEND(readability-identifier-naming)
 

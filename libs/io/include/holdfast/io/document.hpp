@@ -154,9 +154,6 @@ void take_number(const model::MaterialParameter& parameter, double value, Docume
 bool is_said(const model::MaterialParameter& parameter, const model::Material& defaults,
              const Document& document);
 
-/// Whether somebody says what the elastic modulus is.
-bool is_modulus_stated(const Document& document);
-
 /// Reads any of the formats, those of foreign_formats() too. Error::where is "line 12" or a JSON
 /// pointer such as "/modules/3".
 base::Result<ReadDocument> read_document(std::string_view text, const ReadOptions& options = {});

@@ -70,7 +70,8 @@ void write_vtu(std::ostream& out, const model::Robot& robot, const verdict::Asse
                const WriteOptions& options = {}, std::span<const model::Obstacle> obstacles = {});
 
 /// Writes a robot in its deformed shape under `factor` times its loads as write_vtu() does. Modules
-/// are turned by their rotation vectors, however large; the factor is `load_factor` of the file.
+/// are turned by their rotation vectors, however large, also where loads are not known; the factor
+/// is `load_factor` of the file.
 void write_deformed_vtu(std::ostream& out, const model::Robot& robot,
                         const verdict::Assessment& assessment, double factor,
                         const WriteOptions& options = {},

@@ -124,6 +124,8 @@ class Conductor : private ConductorParts {
   Order after_loads(const Setup& setup, const Report& report);
   Order conclude(const Setup& setup, const Report& worst);
   Order decide();
+  bool is_bending_due() const;
+  Order after_bend(const Setup& setup, const Report& report);
   Order resume(const Setup& setup);
   Order after_resume(const Report& report);
 };

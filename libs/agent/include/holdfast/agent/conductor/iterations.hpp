@@ -169,6 +169,10 @@ class Iterations {
   Deflation* deflation_;  ///< Lent; null: iterations are not deflated.
 };
 
+/// The error of any load ratio for an error e of the displacements with e K e = 1, a bound that
+/// holds for any robot.
+double ratio_per_energy_root(const Setup& setup);
+
 /// Are not only load ratios asked for, but the forces of facets?
 bool needs_forces(const Setup& setup, const Whole& whole);
 

@@ -39,6 +39,7 @@ struct Whole {
   bool may_have_fronts;                ///< There is memory, and they have not failed.
   bool is_fixed;                       ///< A module is fixed, or bonded to something.
   bool has_uneven_supports;            ///< The rigid body alone does not say whether it topples.
+  bool judges_bending;                 ///< Setup::judges_bending
   bool is_resumed;                     ///< This verdict has started from the last one.
   std::int32_t mass;                   ///< Of all modules, planned ones included, ...
   std::array<std::int32_t, 2> moment;  ///< ... and their first moments from the root.

@@ -42,8 +42,9 @@ enum class Reason : std::uint8_t {
   kMaySlip,        ///< A facet is pulled sideways by more than its friction.
   kCellsContradict,  ///< A module would sit in two cells, or an anchor in another than it was told.
   kFacesMismatch,    ///< Two faces are connected that do not look at each other.
+  kSecondOrder,      ///< Linear theory says that it holds, but bending may change that.
 };
-inline constexpr int kReasonCount = 19;
+inline constexpr int kReasonCount = 20;
 
 /// What there is to say of connections besides how much they carry, where they have laws of their
 /// own: which limit it is (mechanics::Limit) that the worst one is nearest to, ...
@@ -196,6 +197,9 @@ inline constexpr float kNoLoadRatio = -1e20F;
 /// The least pressure at the facets of a robot without feet that could let go.
 inline constexpr float kNoFacetMargin = 1e20F;
 
+/// The margin of facets where none sticks.
+inline constexpr float kNoMomentMargin = 1e20F;
+
 /// What comes back, summed up the tree. Operations share the fields; most have a name for each.
 struct Report {
   std::uint8_t flags = 0;
@@ -263,6 +267,19 @@ struct Report {
     return static_cast<std::uint8_t>(mask);
   }  ///< To the nearest one.
 
+  // kBend: of `count` modules, and `number` ends of beams.
+  constexpr float energy() const { return reals[0]; }  ///< Twice that of all beams, N mm.
+
+  constexpr float bending_energy() const { return reals[1]; }  ///< What of it is from moments.
+
+  /// The sum, over all ends of beams, of the fourth power of how far they have turned.
+  constexpr float rotations() const { return reals[2]; }
+
+  /// The least that may be added to a moment of a facet that sticks before it tilts, N mm.
+  constexpr float moment_margin() const { return reals[3]; }
+
+  constexpr float load_n() const { return reals[4]; }  ///< The sum of the sizes of all forces.
+
   // kNext: `count` free faces are decided.
   constexpr std::uint32_t undecided_count() const { return number; }  ///< Free faces that are not.
 
@@ -297,7 +314,10 @@ inline constexpr std::uint8_t kMayDiffer = 16;
 inline constexpr std::uint8_t kStepTold = 32;  ///< kPlan: a step was told.
 inline constexpr std::uint8_t kDenied = 2;     ///< kWord: a word does not fit this module.
 inline constexpr std::uint8_t kSplit = 4;  ///< kWord: the robot would be in pieces, in stage mask.
-inline constexpr std::uint8_t kNewLinks = 1;  ///< kStage: other connections are off than before.
+inline constexpr std::uint8_t kHasSupport = 1;  ///< kBend: a module is fixed, or a facet sticks.
+inline constexpr std::uint8_t kHasTilting = 2;  ///< kBend: a facet tilts, or is held open.
+inline constexpr std::uint8_t kHasSliding = 4;  ///< kBend: a facet presses and is not held.
+inline constexpr std::uint8_t kNewLinks = 1;    ///< kStage: other connections are off than before.
 
 wire::Writer encode(const Order& order);
 wire::Writer encode(wire::Operation operation, const Report& report);

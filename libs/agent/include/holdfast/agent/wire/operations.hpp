@@ -114,6 +114,8 @@ inline constexpr OperationInfo kOperations[] = {
      70 + 4 * wire::kKeptMax, Phase::kEquilibrium,
      {.fixed = 2, .is_counted = true}, true, true,
      "an iteration, corners, the worst connection"},
+    {wire::Operation::kBend, "bend", 2, 31, Phase::kOverload, {}, false, false,
+     "whether bending may matter"},
 };
 
 // clang-format on

@@ -112,8 +112,9 @@ enum class Operation : std::uint8_t {
   kResumeDeflated,   ///< kResume, and the energies of the changes that modules keep.
   kIterateDeflated,  ///< kIterate, and along those changes.
   kIterateLast,      ///< kIterateDeflated and kClose in one: probably the last one.
+  kBend,             ///< How far beams turn and what they store: may bending matter?
 };
-inline constexpr int kOperationLast = static_cast<int>(Operation::kIterateLast);
+inline constexpr int kOperationLast = static_cast<int>(Operation::kBend);
 
 /// Sizes of whole messages, type byte included; 0 for what is not a message. `second` is the byte
 /// after the type and matters for orders and reports only.
