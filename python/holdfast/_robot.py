@@ -7,7 +7,7 @@ import json
 import math
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, Optional, Union
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -19,8 +19,12 @@ from ._failures import Cascade, LoseOne, cascade_of, lose_one_of
 from ._figures import Path
 from ._given import (Cell, Cells, Table, cell_of, counted, floats, head_of, json_of, level, listed,
                      load_list, obstacle_list, own_parts, reading)
+from ._plan_failures import PlanQuestions, asked_of
 from ._progress import Progress, told
 from ._report import Report
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 
 class Robot:
@@ -222,11 +226,14 @@ class Robot:
 
     def next(self, *, threads: int = 0, memory: float = 4, bonded: bool = False,
              exact: bool = False, seconds: float = math.inf,
-             safety_factor: Optional[float] = None, progress: Progress = None) -> Places:
+             safety_factor: Optional[float] = None, progress: Progress = None,
+             **questions: Unpack[PlanQuestions]) -> Places:
         """Where may the next module go? Judges every free cell beside the robot.
 
         Most places of robots of more than 3,000 modules are certified by a bound of the load ratio;
-        `exact` finds it for all. After `seconds` the search ends with what is judged by then.
+        `exact` finds it for all. After `seconds` the search ends with what is judged by then. With
+        `PlanQuestions` a place is safe only if the robot with a module there holds with
+        ``probability``, or whatever is lost: `Places.reliability`, `Places.lose_one`.
 
         >>> Robot([[0, 0, 0], [1, 0, 0]]).next().safe.shape
         (8, 3)
@@ -234,7 +241,7 @@ class Robot:
         with told(progress, 'next', is_counted=True) as tell:
             places: Places = Places._of(
                 _core.next(self._asked(safety_factor), threads, memory, bonded, exact, seconds,
-                           tell))
+                           asked_of('next', questions), tell))
         return places
 
     def simulate(self, *, link: str = 'v1', method: str = 'auto', seed: int = 1,

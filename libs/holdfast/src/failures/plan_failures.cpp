@@ -235,4 +235,27 @@ void write_plan_failures_members(io::JsonStream& json, const PlanFailuresWish& w
   }
 }
 
+base::Result<PlanFailuresReport> report_plan_failures(const io::Document& document,
+                                                      const PlanFailuresWish& wish) {
+  PlanFailuresReport report;
+  if (!wish.is_wanted()) {
+    return report;
+  }
+  auto found = find_plan_failures(document, wish);
+  if (!found) {
+    return found.error();
+  }
+  report.found = std::move(found).value();
+  report.text = plan_failures_text(wish, report.found);
+  report.members = [wish, found = report.found](io::JsonStream& json) {
+    write_plan_failures_members(json, wish, found);
+  };
+  io::JsonStream json(report.member_text, io::JsonStream::Layout::kLine);
+  json.begin_object();
+  report.members(json);
+  json.end_object();
+  report.member_text = report.member_text.substr(1, report.member_text.size() - 2);
+  return report;
+}
+
 }  // namespace holdfast
