@@ -60,7 +60,7 @@ def steps(robot: Union[Robot, Path], plan: Optional[Sequence[Mapping[str, Any]]]
     >>> steps(tower, [{'attach': [[0, 0, 1]]}, {'attach': [[0, 0, 2], [0, 0, 3]]}])
     <holdfast.Steps: 2 steps, safe>
     >>> steps(tower, [{'attach': [[0, 0, 1]]}], scatter=0.1, lose_one=True).lose_one.holds_all
-    True
+    False
     """
     start = _robot(robot)
     if plan is not None:
