@@ -314,7 +314,7 @@ class Robot:
                                   'its own, which steps cannot say; expected a robot without it')
         there = {cell_of(module) for module in document['modules']} | attached
         document['loads'] = [load for load in document.get('loads', []) if cell_of(load) in there]
-        return self._as_safe(self.from_text(json_of(document), name=self.name))
+        return self.from_text(json_of(document), name=self.name)
 
     @property
     def step_count(self) -> int:
@@ -331,12 +331,13 @@ class Robot:
 
     @property
     def safety_factor(self) -> float:
-        """What all strengths are divided by; 1 unless `with_safety_factor` says otherwise."""
+        """What all strengths are divided by; 1 unless its file or `with_safety_factor` says
+        otherwise."""
         return self._held.safety_factor
 
     def with_safety_factor(self, factor: float) -> Robot:
         """The same robot with all strengths divided by a factor: safe is what would be safe under
-        all loads times it. It is no part of a file: `json` does not have it.
+        all loads times it. Files keep it.
 
         >>> tower = Robot([[0, 0, 0], [0, 0, 1]]).with_safety_factor(2)
         >>> tower.safety_factor, tower.attached().safety_factor
@@ -348,11 +349,6 @@ class Robot:
         """What is judged if somebody asks for a safety factor, or for none."""
         return (self._held if safety_factor is None
                 else self._held.with_safety_factor(safety_factor))
-
-    def _as_safe(self, other: Robot) -> Robot:
-        """Another robot, with the safety factor of this one."""
-        return (other if other.safety_factor == self.safety_factor
-                else other.with_safety_factor(self.safety_factor))
 
     def attached(self) -> Robot:
         """The same robot with its planned modules attached.
@@ -542,13 +538,11 @@ class Robot:
         return hash((self.name, len(self)))
 
     def __reduce__(self) -> Any:
-        return (Robot.from_text, (self.json(),), (self.name, self.safety_factor))
+        return (Robot.from_text, (self.json(),), self.name)
 
-    def __setstate__(self, state: tuple[str, float]) -> None:
-        if state[0] != self.name:
-            self._held = _core.Structure.load_text(self.json(), state[0], reading())
-        if state[1] != 1:
-            self._held = self._held.with_safety_factor(state[1])
+    def __setstate__(self, name: str) -> None:
+        if name != self.name:
+            self._held = _core.Structure.load_text(self.json(), name, reading())
 
     def __copy__(self) -> Robot:
         return self

@@ -12,6 +12,7 @@ import pytest
 
 import holdfast
 from holdfast import Robot, Verdict
+from holdfast._pictures import states
 
 
 def arm(length):
@@ -93,9 +94,15 @@ def test_a_safety_factor_divides_strengths_and_is_not_lost():
     assert beam.check(safety_factor=1.01 / ratio).verdict is Verdict.OVERLOAD
     allowed = beam.with_safety_factor(1.25)
     assert allowed.safety_factor == 1.25 and beam.safety_factor == 1 and allowed != beam
-    again = [pickle.loads(pickle.dumps(allowed)), copy.deepcopy(allowed), allowed.attached(),
+    assert json.loads(allowed.json())['safety_factor'] == 1.25
+    assert Robot.from_text(allowed.json()) == allowed != Robot.from_text(beam.json())
+    assert 'safety_factor' not in beam.json()
+    again = [Robot.from_text(allowed.json()), Robot.from_text(allowed.visiblesim()),
+             pickle.loads(pickle.dumps(allowed)), copy.deepcopy(allowed), allowed.attached(),
              allowed.with_steps([]), allowed.translated([1, 0, 0]), allowed.rotated(),
-             allowed.check().robot, pickle.loads(pickle.dumps(allowed.check())).robot]
+             *states(allowed.planning([])), allowed.check().robot,
+             pickle.loads(pickle.dumps(allowed.check())).robot]
+    assert len(again) == 11
     for robot in again:
         assert robot.safety_factor == 1.25
     assert again[0].check().load_ratio_max == pytest.approx(1.25 * ratio, rel=1e-12)

@@ -48,9 +48,9 @@ void add_safety_factor(CLI::App& command, io::ReadOptions& reading) {
   command
       .add_option("--safety-factor,--margin", reading.safety_factor,
                   "Divide all strengths by this: safe is what would be safe under all loads times "
-                  "it")
+                  "it; without it by what the file states")
       ->type_name("FACTOR")
-      ->check(number_between(1.0, 1000.0));
+      ->check(number_between(1.0, io::kSafetyFactorMax));
 }
 
 }  // namespace holdfast::cli

@@ -102,7 +102,7 @@ class PlanWalk {
     if (!hangings.empty()) {
       std::vector<double> ratios;
       std::ranges::transform(hangings, std::back_inserter(ratios), [&](const plan::Hanging& one) {
-        return one.load_ratio / document_.safety_factor;
+        return one.load_ratio / document_.extension.safety_factor;
       });
       const double hold = verdict::find_reliability(ratios, {.distribution = scatter.distribution,
                                                              .cv = scatter.cv,
