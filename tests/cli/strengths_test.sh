@@ -128,7 +128,7 @@ answer_of() { # the exit status, and the lines that say how loaded and how sure 
   local code=0
   "$program" "$@" >out 2>err </dev/null || code=$?
   echo "$code"
-  grep -E 'load ratio|reliability' out || true
+  grep -E 'load ratio|reliability| mm  [(]' out || true
 }
 for command in 'check --scatter 10%' next steps 'order --help-seconds 0' simulate; do
   # shellcheck disable=SC2086  # Words of a command.
