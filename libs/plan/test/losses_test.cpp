@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -331,6 +332,47 @@ TEST(Losses, of_feet_and_of_modules_on_them_need_no_check) {
     expect_same(fast.fatal, checked.fatal, "block");
     expect_same(fast.undecided, checked.undecided, "block");
   }
+}
+
+/// Whenever time is up, what is answered is right, and the rest is undecided; work that takes
+/// longer, such as the inverse, is given up.
+TEST(Losses, that_time_does_not_suffice_for_are_undecided) {
+  model::RobotSpec spec;
+  constexpr std::int32_t kWidth = 11;
+  for (std::int32_t i = 0; i < kWidth * kWidth * kWidth; ++i) {
+    spec.existing.push_back({i % kWidth, i / kWidth % kWidth, i / kWidth / kWidth});
+  }
+  LossOptions options{.equilibrium = {.thread_count = 2}, .loop_count_min = 1000};
+  const LossReport all = lose_each(spec, options);
+  ASSERT_TRUE(all.whole.is_safe());
+  std::size_t undecided_count = 0;
+  for (int i = 0; i < 12; ++i) {
+    options.seconds_max = all.seconds * i / 12;
+    const LossReport some = lose_each(spec, options);
+    ASSERT_EQ(some.answers.size(), all.answers.size());
+    std::size_t left_count = 0;
+    for (std::size_t k = 0; k < all.answers.size(); ++k) {
+      EXPECT_EQ(some.answers[k].loss, all.answers[k].loss);
+      const bool is_left = some.answers[k].verdict == Verdict::kUndecided;
+      EXPECT_TRUE(is_left || some.answers[k].verdict == all.answers[k].verdict);
+      left_count += is_left ? 1 : 0;
+    }
+    EXPECT_EQ(some.undecided.size(), left_count);
+    EXPECT_LT(some.seconds, 1.2 * all.seconds + 1);
+    undecided_count += left_count;
+  }
+  EXPECT_GT(undecided_count, 0U);
+}
+
+/// What a caller's progress throws passes through, also while time is watched.
+TEST(Losses, are_given_up_by_whoever_is_told) {
+  model::RobotSpec spec;
+  for (std::int32_t i = 0; i < 64; ++i) {
+    spec.existing.push_back({i % 4, i / 4 % 4, i / 16});
+  }
+  LossOptions options{.equilibrium = {.thread_count = 2}, .seconds_max = 1000};
+  options.progress = [](std::size_t, std::size_t) { throw std::runtime_error("enough"); };
+  EXPECT_THROW(lose_each(spec, options), std::runtime_error);
 }
 
 /// No bound by loops is below what a check without the connection finds.
