@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
@@ -16,6 +17,7 @@
 #include <vector>
 
 #include "bounds/loop_bound.hpp"
+#include "bounds/patch_bound.hpp"
 #include "general_robot.hpp"
 #include "random_robot.hpp"
 #include "seeds.hpp"
@@ -126,6 +128,14 @@ model::RobotSpec only(model::RobotSpec spec, const std::vector<Cell>& cells) {
   spec.existing.insert(spec.existing.end(), spec.planned.begin(), spec.planned.end());
   spec.planned.clear();
   return spec;
+}
+
+/// All cells but that of a module that is lost.
+std::vector<Cell> cells_without(const model::RobotSpec& spec, const LostPart& part) {
+  std::vector<Cell> cells = spec.existing;
+  cells.insert(cells.end(), spec.planned.begin(), spec.planned.end());
+  std::erase_if(cells, [&](const Cell& cell) { return part.module && cell == part.loss.cells[0]; });
+  return cells;
 }
 
 bool is_held(const model::RobotSpec& spec, const std::vector<Cell>& piece) {
@@ -416,6 +426,70 @@ TEST(Losses, by_loops_are_bounds_of_what_is_carried) {
   }
   EXPECT_GT(lattice_count, 1);
   EXPECT_GT(compared_count, 100U);
+}
+
+/// How many losses of each kind were compared.
+using KindCounts = std::array<std::size_t, kLossKindCount>;
+
+/// No bound by patches is below what a check of a robot without the part finds.
+void expect_patch_bounds(const model::RobotSpec& spec, bool is_bonded, const std::string& what,
+                         KindCounts& counts) {
+  const model::Robot robot = model::Robot::create(spec).value();
+  solver::EquilibriumOptions options{.thread_count = 1};
+  options.is_bonded = is_bonded;
+  const verdict::Assessment solved = verdict::assess(robot, options);
+  const auto loops = LoopBound::make(spec, robot, solved, is_bonded);
+  if (!loops) {
+    return;
+  }
+  const PatchBound patches(robot, solved, *loops, is_bonded);
+  for (const LostPart& part : PartFinder(robot).find({true, true, true})) {
+    const auto bound = patches.without(part);
+    if (!bound) {
+      continue;
+    }
+    const auto left =
+        model::Robot::create(only(without(spec, part.loss), cells_without(spec, part)));
+    ASSERT_TRUE(left) << what << " " << text(part.loss);
+    const Judgement exact = judge(left.value(), options);
+    EXPECT_EQ(exact.verdict, Verdict::kSafe) << what << " " << text(part.loss);
+    EXPECT_LE(exact.load_ratio_max.value_or(0), *bound) << what << " " << text(part.loss);
+    ++counts.at(static_cast<std::size_t>(part.loss.kind));
+  }
+}
+
+TEST(Losses, by_patches_are_bounds_of_what_is_carried) {
+  KindCounts counts{};
+  int lattice_count = 0;
+  for (const base::Lattice& lattice : test::kLattices) {
+    for (const std::int32_t height : {3, 5}) {
+      model::RobotSpec block{.lattice = lattice};
+      for (std::int32_t i = 0; i < 5 * 5 * height; ++i) {
+        block.existing.push_back({i % 5, i / 5 % 5, i / 25});
+      }
+      if (!model::Robot::create(block)) {
+        continue;
+      }
+      ++lattice_count;
+      for (const bool is_bonded : {false, true}) {
+        expect_patch_bounds(with_ratio(block, 0.05), is_bonded, "block", counts);
+      }
+    }
+  }
+  EXPECT_GT(lattice_count, 2);
+  for (const std::size_t count : counts) {
+    EXPECT_GT(count, 30U);
+  }
+}
+
+TEST(Losses, by_patches_are_bounds_on_random_robots) {
+  KindCounts counts{};
+  for (std::uint64_t seed = 0; seed < test::campaign(60U); ++seed) {
+    const model::RobotSpec spec =
+        with_ratio(test::random_robot(seed, 12, 90), seed % 2 == 0 ? 0.02 : 0.1);
+    expect_patch_bounds(spec, seed % 3 == 0, "seed " + std::to_string(seed), counts);
+  }
+  EXPECT_GT(counts[0] + counts[1] + counts[2], 30U);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "bounds/loop_bound.hpp"
+#include "bounds/patch_bound.hpp"
 #include "holdfast/base/check.hpp"
 #include "holdfast/host/interruption.hpp"
 #include "holdfast/host/team.hpp"
@@ -154,7 +155,7 @@ class LossSearch {
       return;
     }
     if (robot_.modules().size() >= options_.loop_count_min) {
-      bound_by_loops(solved);
+      bound_locally(solved);
     }
     if (left_count() == 0) {
       return;
@@ -195,15 +196,19 @@ class LossSearch {
         answers_, [](const auto& answer) { return answer && answer->is_bound; }));
   }
 
-  void bound_by_loops(const verdict::Assessment& solved) {
+  void bound_locally(const verdict::Assessment& solved) {
     const auto loops = LoopBound::make(spec_, robot_, solved, options_.equilibrium.is_bonded);
-    if (loops) {
-      bound_each([&](const LostPart& part) {
-        return part.loss.kind == LossKind::kConnection && !part.is_apart
-                   ? loops->without(part.change.lost_beams.front())
-                   : std::nullopt;
-      });
+    if (!loops) {
+      return;
     }
+    bound_each([&](const LostPart& part) {
+      return part.loss.kind == LossKind::kConnection && !part.is_apart
+                 ? loops->without(part.change.lost_beams.front())
+                 : std::nullopt;
+    });
+    tell();
+    const PatchBound patches(robot_, solved, *loops, options_.equilibrium.is_bonded);
+    bound_each([&](const LostPart& part) { return patches.without(part); });
   }
 
   /// Answers those that are safe by what bound_of(part) says.
