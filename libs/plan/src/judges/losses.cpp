@@ -7,21 +7,23 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <limits>
+#include <map>
 #include <memory>
 #include <span>
 #include <utility>
 
 #include "bounds/loop_bound.hpp"
-#include "bounds/patch_bound.hpp"
 #include "holdfast/base/check.hpp"
 #include "holdfast/host/interruption.hpp"
 #include "holdfast/host/team.hpp"
 #include "holdfast/model/connected_parts.hpp"
 #include "judges/core_assessment.hpp"
 #include "judges/loss_judge.hpp"
-#include "judges/lost_part.hpp"
 #include "part_of.hpp"
+#include "patches/lost_part.hpp"
+#include "patches/patch_bound.hpp"
 #include "patience.hpp"
 #include "severity.hpp"
 
@@ -208,7 +210,39 @@ class LossSearch {
     });
     tell();
     const PatchBound patches(robot_, solved, *loops, options_.equilibrium.is_bonded);
-    bound_each([&](const LostPart& part) { return patches.without(part); });
+    for (const int hops : PatchBound::kHops) {
+      bound_by_patches(patches, hops);
+    }
+  }
+
+  /// Takes the patterns that most losses have, so many as are cheap.
+  void bound_by_patches(const PatchBound& patches, int hops) {
+    std::vector<std::optional<std::size_t>> patterns(parts_.size());
+    host::Team team(options_.equilibrium.thread_count, parts_.size());
+    team.share(0, parts_.size(), [&](std::size_t begin, std::size_t end) {
+      for (; begin < end; ++begin) {
+        patterns[begin] = answers_[begin] ? std::nullopt : patches.pattern(parts_[begin], hops);
+      }
+    });
+    std::map<std::size_t, std::size_t> counts;
+    for (const auto& pattern : patterns) {
+      if (pattern) {
+        ++counts[*pattern];
+      }
+    }
+    std::vector<std::size_t> sizes;
+    std::ranges::transform(counts, std::back_inserter(sizes),
+                           [](const auto& one) { return one.second; });
+    std::ranges::sort(sizes, std::ranges::greater());
+    const std::size_t count_max = patches.pattern_count_max(hops);
+    const std::size_t least = std::max(PatchBound::sharing_min(hops),
+                                       sizes.size() > count_max ? sizes[count_max] + 1 : 0);
+    bound_each([&](const LostPart& part) {
+      const auto& pattern = patterns[static_cast<std::size_t>(&part - parts_.data())];
+      return pattern && counts.find(*pattern)->second >= least ? patches.without(part, hops)
+                                                               : std::nullopt;
+    });
+    tell();
   }
 
   /// Answers those that are safe by what bound_of(part) says.

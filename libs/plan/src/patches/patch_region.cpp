@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "bounds/patch_region.hpp"
+#include "patches/patch_region.hpp"
 
 #include <algorithm>
 

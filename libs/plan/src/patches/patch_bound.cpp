@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "bounds/patch_bound.hpp"
+#include "patches/patch_bound.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,10 +21,8 @@ using base::Vec6;
 /// Bounds nearer to 1 are not trusted, as of EnergyBound.
 constexpr double kPatchRatioMax = 1 - 1e-3;
 
-/// How many hops patches reach, one after the other until one suffices, and what they may hold:
-/// factors of 100 modules take some 10 ms.
-constexpr std::array kPatchHops = {2, 3};
-constexpr std::size_t kPatchCountMax = 110;
+/// What a patch may hold: factors of 140 modules take some 100 ms, of 24 modules 2 ms.
+constexpr std::size_t kPatchCountMax = 140;
 
 /// Blocks of all factors that are kept, 300 bytes each.
 constexpr std::size_t kKeptBlocksMax = 4'000'000;
@@ -65,8 +63,8 @@ struct PatchBound::Case {
 /// The way of a weight to the ground.
 struct PatchBound::Path {
   double energy = 0;
-  double ratio = 0;         ///< The largest load ratio of half of it alone.
-  double room = kInfinite;  ///< Of the facet where it ends.
+  double ratio = 0;  ///< The largest load ratio of half of it alone.
+  double need = 0;   ///< What half of it takes of the room of the facet where it ends.
 };
 
 struct PatchBound::Change {
@@ -127,6 +125,16 @@ PatchBound::PatchBound(const model::Robot& robot, const verdict::Assessment& sol
   }
 }
 
+/// Whether something fixed takes what a lost beam carries, so that a hub does not take it all.
+bool PatchBound::is_beside_fixed(const LostPart& part) const {
+  const auto is_fixed = [&](const model::Connection& beam) {
+    return robot_.modules()[at(beam.a)].support == model::Support::kFixed ||
+           robot_.modules()[at(beam.b)].support == model::Support::kFixed;
+  };
+  return std::ranges::any_of(part.change.lost_beams, is_fixed) ||
+         (part.hanging && is_fixed(*part.hanging));
+}
+
 /// Adds what is lost: forces of beams at their ends that are left, or of a foot.
 void PatchBound::add_pulls(const LostPart& part, Case& found) const {
   const auto& u = solved_.equilibrium.displacement;
@@ -166,17 +174,19 @@ void PatchBound::add_pulls(const LostPart& part, Case& found) const {
 
 /// The hub of a module is the neighbour that is nearest to the ground; both ends of a connection
 /// could be one.
-std::optional<PatchBound::Case> PatchBound::case_of(const LostPart& part, int hops) const {
+std::optional<PatchBound::Case> PatchBound::case_of(const LostPart& part, int hops,
+                                                    bool is_by_hub) const {
   auto region = region_around(robot_, part, first_facet_, hops, kPatchCountMax);
   if (!region) {
     return std::nullopt;
   }
   Case found{.region = *std::move(region), .loads = {}};
   found.loads.resize(found.region.modules.size());
-  if (found.region.feet.empty()) {
-    if (!part.change.lost_facets.empty()) {
-      return std::nullopt;
-    }
+  if (is_by_hub ? !part.change.lost_facets.empty() || is_beside_fixed(part)
+                : found.region.feet.empty()) {
+    return std::nullopt;
+  }
+  if (is_by_hub) {
     std::size_t hub =
         at(part.change.lost_beams.empty() ? part.hanging->a : part.change.lost_beams.front().a);
     if (part.module) {
@@ -222,6 +232,9 @@ PatchBound::Vecs PatchBound::unbalanced(const Case& found, const Vecs& v, Vecs l
     }
   }
   for (const PatchRegion::Foot& foot : found.region.feet) {
+    if (found.hub != PatchRegion::kNone) {
+      break;  // The hub takes what feet could.
+    }
     const Direction direction = robot_.facets()[foot.facet].direction;
     take(foot.row, beam_.middle_force(direction, v[at(foot.row)], {}),
          pulls_[at(base::index(direction))].first);
@@ -334,7 +347,9 @@ void PatchBound::add_feet(const Case& found, const Vecs& open, const Vecs& close
   for (const PatchRegion::Foot& foot : found.region.feet) {
     const model::Facet& facet = robot_.facets()[foot.facet];
     const Vec s = beam_.middle_force(facet.direction, closed[at(foot.row)], {});
-    const Vec t = beam_.middle_force(facet.direction, open[at(foot.row)], {});
+    const Vec t = found.hub == PatchRegion::kNone
+                      ? beam_.middle_force(facet.direction, open[at(foot.row)], {})
+                      : Vec{};
     change.gap += energy_of(base::sum_of<double>(s, -1, t), stiffness_);
     change.norm += energy_of(t, stiffness_);
     Vec force =
@@ -345,21 +360,20 @@ void PatchBound::add_feet(const Case& found, const Vecs& open, const Vecs& close
   }
 }
 
-/// Half of what comes upon the foot where a path ends.
+/// What comes upon the foot where a path ends.
 void PatchBound::add_end(std::size_t module, const Vec& at_node, Path& path) const {
   const std::size_t facet = first_facet_[module];
   if (facet == first_facet_[module + 1]) {
     return;  // It is fixed.
   }
-  const model::Facet& end = robot_.facets()[facet];
-  const Vec more = force_in_middle(beam_, end.direction, at_node, robot_.material().pitch_mm);
+  const Vec more =
+      force_in_middle(beam_, robot_.facets()[facet].direction, at_node, robot_.material().pitch_mm);
   path.energy += energy_of(more, stiffness_);
-  Vec force = beam_.middle_force(end.direction, solved_.equilibrium.displacement[module], {});
-  force[2] += std::abs(more[2]) / 2;  // Less pressure, and more bending, whatever the signs.
+  const double b = robot_.foot_half_width_mm();
   for (const std::size_t axis : {3U, 4U}) {
-    force[axis] = std::abs(force[axis]) + std::abs(more[axis]) / 2;
+    const double per_norm = std::sqrt(stiffness_[axis] + stiffness_[2] * b * b);
+    path.need = std::max(path.need, (std::abs(more[2]) * b + std::abs(more[axis])) / 2 / per_norm);
   }
-  path.room = slack(end, force);
 }
 
 std::optional<PatchBound::Path> PatchBound::path_of(const LostPart& part, std::size_t hub) const {
@@ -393,8 +407,8 @@ std::optional<PatchBound::Path> PatchBound::path_of(const LostPart& part, std::s
   return path;
 }
 
-/// As of LoopBound; where a module is lost, its share of what the others' masses have moved is,
-/// too.
+/// Says it as LoopBound does; where a module is lost, its share of what the others' masses have
+/// moved is, too.
 bool PatchBound::stays_over_polygon(const LostPart& part, double norm, double units) const {
   if (!limits_.has_polygon) {
     return true;
@@ -418,11 +432,8 @@ bool PatchBound::stays_over_polygon(const LostPart& part, double norm, double un
   return margin && shift < *margin;
 }
 
-std::optional<double> PatchBound::without(const LostPart& part, int hops) const {
-  const auto found = case_of(part, hops);
-  if (!found) {
-    return std::nullopt;
-  }
+std::optional<double> PatchBound::without(const LostPart& part, const Case& given) const {
+  const Case* const found = &given;
   const auto factors = factors_of(*found);
   if (!factors->open || !std::isfinite(factors->units)) {
     return std::nullopt;
@@ -448,21 +459,44 @@ std::optional<double> PatchBound::without(const LostPart& part, int hops) const 
                        path->ratio + limits_.ratio_per_norm * off;
   const double norm = std::sqrt(change.norm) + weight + doubt + rounding;
   const bool is_certain = ratio < kPatchRatioMax &&
-                          off < std::min({limits_.room, change.room, path->room}) &&
+                          off + path->need < std::min(limits_.room, change.room) &&
                           stays_over_polygon(part, norm, factors->units);
   return is_certain ? std::optional(ratio) : std::nullopt;
 }
 
-std::optional<double> PatchBound::without(const LostPart& part) const {
-  if (part.is_apart || part.has_fixed || part.fallen_count > 0) {
-    return std::nullopt;
-  }
-  for (const int hops : kPatchHops) {
-    if (const auto bound = without(part, hops)) {
+namespace {
+
+bool is_known_to_patches(const LostPart& part) {
+  return !part.is_apart && !part.has_fixed && part.fallen_count == 0;
+}
+
+}  // namespace
+
+std::optional<double> PatchBound::without(const LostPart& part, int hops) const {
+  for (const bool is_by_hub : {true, false}) {
+    const auto found = is_known_to_patches(part) ? case_of(part, hops, is_by_hub) : std::nullopt;
+    if (const auto bound = found ? without(part, *found) : std::nullopt) {
       return bound;
     }
   }
   return std::nullopt;
+}
+
+std::optional<std::size_t> PatchBound::pattern(const LostPart& part, int hops) const {
+  const auto region = is_known_to_patches(part)
+                          ? region_around(robot_, part, first_facet_, hops, kPatchCountMax)
+                          : std::nullopt;
+  return region ? std::optional(std::hash<std::string>{}(region->key(robot_))) : std::nullopt;
+}
+
+std::size_t PatchBound::pattern_count_max(int hops) const {
+  constexpr std::array<std::size_t, kHops.size()> kModulesPerPattern = {50, 100, 200};
+  return robot_.modules().size() / kModulesPerPattern.at(at(hops - kHops.front()));
+}
+
+std::size_t PatchBound::sharing_min(int hops) {
+  constexpr std::array<std::size_t, kHops.size()> kSharing = {1, 4, 8};
+  return kSharing.at(at(hops - kHops.front()));
 }
 
 }  // namespace holdfast::plan

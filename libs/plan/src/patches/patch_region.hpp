@@ -10,7 +10,7 @@
 
 #include "beam_blocks.hpp"
 #include "holdfast/model/robot.hpp"
-#include "judges/lost_part.hpp"
+#include "patches/lost_part.hpp"
 
 namespace holdfast::plan {
 

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "bounds/loop_bound.hpp"
-#include "bounds/patch_region.hpp"
 #include "holdfast/verdict/rigid_body.hpp"
+#include "patches/patch_region.hpp"
 
 namespace holdfast::plan {
 
@@ -33,8 +33,20 @@ class PatchBound {
   PatchBound(const model::Robot& robot, const verdict::Assessment& solved, const LoopBound& loops,
              bool is_bonded);
 
+  /// How many hops patches reach, one after the other until one suffices.
+  static constexpr std::array kHops = {2, 3, 4};
+
   /// What no load ratio exceeds after a loss; none if the robot may be unsafe then.
-  std::optional<double> without(const LostPart& part) const;
+  std::optional<double> without(const LostPart& part, int hops) const;
+
+  /// A number that losses share whose patches are alike, which takes one factorization; none of
+  /// losses that no patch knows.
+  std::optional<std::size_t> pattern(const LostPart& part, int hops) const;
+
+  /// How many patterns are cheap beside what else would have to be done for the robot, and how many
+  /// losses have to share one.
+  std::size_t pattern_count_max(int hops) const;
+  static std::size_t sharing_min(int hops);
 
  private:
   using Vec = base::Vec6<double>;
@@ -59,8 +71,9 @@ class PatchBound {
   struct Path;
   struct Change;
 
-  std::optional<double> without(const LostPart& part, int hops) const;
-  std::optional<Case> case_of(const LostPart& part, int hops) const;
+  std::optional<double> without(const LostPart& part, const Case& found) const;
+  std::optional<Case> case_of(const LostPart& part, int hops, bool is_by_hub) const;
+  bool is_beside_fixed(const LostPart& part) const;
   void add_pulls(const LostPart& part, Case& found) const;
   std::shared_ptr<const Factors> factors_of(const Case& found) const;
   std::shared_ptr<const Factors> factored(const Case& found) const;
