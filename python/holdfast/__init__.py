@@ -13,17 +13,18 @@ Verdicts with margins and loads after Piranda et al., IEEE T-RO 37(6), 2021; equ
 as there. Units: N, mm, kg, s. Cells are VisibleSim's triples, z up.
 """
 from . import _core, robots
-from ._answers import Moves, Order, Outcome, Places, Stage, Steps
+from ._answers import Moves, Order, Outcome, Places, Steps
 from ._core import Error
 from ._distributed import Run
 from ._failures import Cascade, Fit, Fitted, LoseOne, Reliability, fit
 from ._many import check_many, table
 from ._page import PageNotFound
 from ._pictures import animate, plot_order, plot_steps
+from ._plan_failures import PlanLosses, PlanQuestions, PlanReliability
 from ._plans import move, next_places, order, steps
 from ._report import Remedies, Report, Timings
 from ._robot import Robot, families, foreign_formats, generate, load
-from ._verdict import Verdict
+from ._verdict import Stage, Verdict
 
 Error.__module__ = PageNotFound.__module__ = 'holdfast'
 Error.__doc__ = 'A robot, a file or an option is not as it may be; one line says what and where.'
@@ -31,7 +32,8 @@ Error.__doc__ = 'A robot, a file or an option is not as it may be; one line says
 __version__ = _core.version()
 
 __all__ = ['Cascade', 'Error', 'Fit', 'Fitted', 'LoseOne', 'Moves', 'Order', 'Outcome',
-           'PageNotFound', 'Places', 'Reliability', 'Remedies', 'Report', 'Robot', 'Run', 'Stage',
+           'PageNotFound', 'Places', 'PlanLosses', 'PlanQuestions', 'PlanReliability',
+           'Reliability', 'Remedies', 'Report', 'Robot', 'Run', 'Stage',
            'Steps', 'Timings', 'Verdict', 'animate', 'check_many', 'families', 'fit',
            'foreign_formats', 'generate', 'load', 'move', 'next_places', 'order', 'plot_order',
            'plot_steps', 'robots', 'steps', 'table']

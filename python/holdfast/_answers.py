@@ -12,18 +12,11 @@ from . import _core
 from ._figures import Drawn, Path
 from ._given import Cell, Table, counted
 from ._maker import robot_of
-from ._verdict import VERDICTS, Judged, Name, Verdict
+from ._plan_failures import PlanAnswers, StageId
+from ._verdict import VERDICTS, Judged, Name, Stage, Verdict
 
 if TYPE_CHECKING:
     from ._robot import Robot
-
-
-class Stage(Name):
-    """The three stages of a step (Sec. II-B)."""
-
-    RELEASE = 'release'
-    SHIFT = 'shift'
-    CONNECT = 'connect'
 
 
 class Outcome(Name):
@@ -136,6 +129,18 @@ class Places(_Texts, Drawn):
         return cells
 
     @property
+    def reliability(self) -> npt.NDArray[np.float64]:
+        """For each candidate the probability that every connection holds; NaN where it is not
+        known, or was not asked for, as of places that are not safe by themselves."""
+        return np.array(self._held.failures[0], dtype=float)
+
+    @property
+    def lose_one(self) -> list[Optional[str]]:
+        """For each candidate the first loss that brings it down, such as ``(0,0,0)-(1,0,0)``; None
+        where none does, or none was tried."""
+        return self._held.failures[1]
+
+    @property
     def open_count(self) -> int:
         """The number of places of which nothing is known, as time ended the search."""
         return self._held.open_count
@@ -176,11 +181,35 @@ class Strip(Drawn):
         return self._judged.strip_svg(asked)
 
 
-def _stage(place: Optional[tuple[int, int]]) -> Optional[tuple[int, Stage]]:
+def _stage(place: Optional[tuple[int, int]]) -> Optional[StageId]:
     return None if place is None else (place[0], tuple(Stage)[place[1]])
 
 
-class Steps(_Texts, Judged, Drawn):
+class _Judgements(PlanAnswers):
+    """What has the extremes of all its states: the stages of steps, or what an order passes."""
+
+    __slots__ = ()
+
+    @property
+    def load_ratio_max(self) -> Optional[float]:
+        """The largest load ratio of all states that were solved (Eq. 17)."""
+        ratio: Optional[float] = self._held.load_ratio_max
+        return ratio
+
+    @property
+    def load_ratio_bound(self) -> Optional[float]:
+        """What no state exceeds, where some are certified by a bound; None if all were solved."""
+        bound: Optional[float] = self._held.load_ratio_bound
+        return bound
+
+    @property
+    def margin_min_mm(self) -> Optional[float]:
+        """The smallest margin of all states, mm."""
+        margin: Optional[float] = self._held.margin_min_mm
+        return margin
+
+
+class Steps(_Texts, _Judgements, Judged, Drawn):
     """A sequence of steps, each judged at its three stages (Sec. II-B)."""
 
     __slots__ = ('robot',)
@@ -205,29 +234,14 @@ class Steps(_Texts, Judged, Drawn):
         return self._held.stages
 
     @property
-    def first_unsafe(self) -> Optional[tuple[int, Stage]]:
+    def first_unsafe(self) -> Optional[StageId]:
         """The first step, from 0, that is overloaded or unstable, and its stage."""
         return _stage(self._held.first_unsafe)
 
     @property
-    def first_undecided(self) -> Optional[tuple[int, Stage]]:
+    def first_undecided(self) -> Optional[StageId]:
         """The first undecided one before that."""
         return _stage(self._held.first_undecided)
-
-    @property
-    def load_ratio_max(self) -> Optional[float]:
-        """The largest load ratio of all stages that were solved (Eq. 17)."""
-        return self._held.load_ratio_max
-
-    @property
-    def load_ratio_bound(self) -> Optional[float]:
-        """What no stage exceeds, where some are certified by a bound; None if all were solved."""
-        return self._held.load_ratio_bound
-
-    @property
-    def margin_min_mm(self) -> Optional[float]:
-        """The smallest margin of all stages, mm."""
-        return self._held.margin_min_mm
 
     def _drawn(self, asked: _core.Figure) -> str:
         """The verdicts as a band, load ratio and margin below."""
@@ -252,7 +266,7 @@ class Steps(_Texts, Judged, Drawn):
         return f'<holdfast.Steps: {counted(len(self), "step")}, {self.verdict.value}>'
 
 
-class Order(_Texts, _Sought):
+class Order(_Texts, _Judgements, _Sought):
     """An order in which a robot can be built, or taken apart, safe all the way."""
 
     __slots__ = ()
@@ -284,21 +298,6 @@ class Order(_Texts, _Sought):
         return self._held.state_count
 
     @property
-    def load_ratio_max(self) -> Optional[float]:
-        """The largest load ratio of all states on the way that were solved."""
-        return self._held.load_ratio_max
-
-    @property
-    def load_ratio_bound(self) -> Optional[float]:
-        """What no state on the way exceeds."""
-        return self._held.load_ratio_bound
-
-    @property
-    def margin_min_mm(self) -> Optional[float]:
-        """The smallest margin on the way, mm."""
-        return self._held.margin_min_mm
-
-    @property
     def help(self) -> Optional[dict[str, Any]]:
         """Where there is no order: ``supports`` or ``temporary`` modules that would suffice.
 
@@ -322,7 +321,7 @@ class Order(_Texts, _Sought):
         return f'<holdfast.Order {self.outcome.value}: {counted(len(self.batches), "step")}>'
 
 
-class Moves(_Texts, _Sought):
+class Moves(_Texts, PlanAnswers, _Sought):
     """Moves from one shape to another, safe at every stage."""
 
     __slots__ = ()

@@ -14,9 +14,9 @@ from matplotlib.patches import Patch  # type: ignore[import]
 from matplotlib.ticker import MaxNLocator  # type: ignore[import]
 
 from . import _look
-from ._answers import Order, Stage, Steps
+from ._answers import Order, Steps
 from ._given import counted
-from ._verdict import VERDICTS
+from ._verdict import VERDICTS, Stage
 
 _RATIO_INK, _MARGIN_INK, _LIMIT_INK = '#2f6690', '#3f6b7d', '#d1495b'
 _RATIO_WORDS, _MARGIN_WORDS = 'largest load ratio', 'margin, mm'

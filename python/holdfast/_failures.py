@@ -36,8 +36,14 @@ class Reliability(NamedTuple):
     """In how many of them facets are in other states."""
     strength_factor_99: Optional[float]
     """With all strengths times this they hold with probability 0.99."""
+    strength_factor_99_low: Optional[float]
+    """At least this, with 95 %, by the samples of masses; itself without."""
+    strength_factor_99_high: Optional[float]
+    """At most this; None if samples are too few to say."""
     strength_factor_999: Optional[float]
-    """The same for 0.999."""
+    """The same for 0.999, and so are the next two."""
+    strength_factor_999_low: Optional[float]
+    strength_factor_999_high: Optional[float]
 
 
 class LoseOne(NamedTuple):

@@ -60,7 +60,7 @@ def _document(robot: Robot) -> dict[str, Any]:
 
 
 def _made(robot: Robot, document: dict[str, Any]) -> Robot:
-    return robot._as_safe(type(robot).from_text(json.dumps(document), name=robot.name))
+    return type(robot).from_text(json.dumps(document), name=robot.name)
 
 
 def translated(robot: Robot, by: Any) -> Robot:

@@ -88,7 +88,7 @@ def states(robot: Robot) -> Iterator[Robot]:
         carried = [load for load in loads if cell_of(load) in modules]
         text = json.dumps({**document, 'modules': list(modules.values()),
                            **({'loads': carried} if carried else {})})
-        return robot._as_safe(Robot.from_text(text, name=robot.name))
+        return Robot.from_text(text, name=robot.name)
     yield state()
     for step in steps:
         gone = {cell_of(cell) for cell in step.get('detach', [])}

@@ -5,14 +5,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any, Optional, Union
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 from . import _core
 from ._answers import Moves, Order, Places, Steps
 from ._figures import Path
 from ._given import Cell, Cells
+from ._plan_failures import PlanQuestions, asked_of
 from ._progress import Progress, told
 from ._robot import Robot
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 
 def _robot(source: Union[Robot, Path]) -> Robot:
@@ -21,7 +25,8 @@ def _robot(source: Union[Robot, Path]) -> Robot:
 
 def next_places(robot: Union[Robot, Path], *, threads: int = 0, memory: float = 4,
                 bonded: bool = False, exact: bool = False, seconds: float = math.inf,
-                safety_factor: Optional[float] = None, progress: Progress = None) -> Places:
+                safety_factor: Optional[float] = None, progress: Progress = None,
+                **questions: Unpack[PlanQuestions]) -> Places:
     """Where may the next module go? See `Robot.next`.
 
     Most places of robots of more than 3,000 modules are certified by a bound of the load ratio;
@@ -34,24 +39,28 @@ def next_places(robot: Union[Robot, Path], *, threads: int = 0, memory: float = 
     <holdfast.Places: 8 of 8 safe>
     """
     return _robot(robot).next(threads=threads, memory=memory, bonded=bonded, exact=exact,
-                              seconds=seconds, safety_factor=safety_factor, progress=progress)
+                              seconds=seconds, safety_factor=safety_factor, progress=progress,
+                              **questions)
 
 
 def steps(robot: Union[Robot, Path], plan: Optional[Sequence[Mapping[str, Any]]] = None, *,
           threads: int = 0, memory: float = 4, ends_when_unsafe: bool = False,
           exact: bool = False, safety_factor: Optional[float] = None,
-          progress: Progress = None) -> Steps:
+          progress: Progress = None, **questions: Unpack[PlanQuestions]) -> Steps:
     """Is every stage of every step safe?
 
     `plan` is a list of steps as in holdfast JSON, ``[{'attach': [...]}, {'move': [{'from': ...,
     'to': ...}]}]``; without it the robot's own steps are judged. `progress` is called with (steps
     judged, of how many). `exact` solves every stage, also of robots of more than 256 modules: of
     these most stages of steps that only attach, or only detach, are certified by a bound.
-    `safety_factor`: as of `Robot.check`.
+    `safety_factor`: as of `Robot.check`. With `PlanQuestions` every stage is also asked how sure it
+    is (`Steps.reliability`), and what follows if a part is lost (`Steps.lose_one`).
 
     >>> tower = Robot([[0, 0, 0], [1, 0, 0]])
     >>> steps(tower, [{'attach': [[0, 0, 1]]}, {'attach': [[0, 0, 2], [0, 0, 3]]}])
     <holdfast.Steps: 2 steps, safe>
+    >>> steps(tower, [{'attach': [[0, 0, 1]]}], scatter=0.1, lose_one=True).lose_one.holds_all
+    False
     """
     start = _robot(robot)
     if plan is not None:
@@ -60,7 +69,8 @@ def steps(robot: Union[Robot, Path], plan: Optional[Sequence[Mapping[str, Any]]]
         start = start.with_safety_factor(safety_factor)
     with told(progress, 'steps', is_counted=True) as tell:
         judged: Steps = Steps._of(
-            _core.steps(start._held, threads, memory, ends_when_unsafe, exact, tell))
+            _core.steps(start._held, threads, memory, ends_when_unsafe, exact,
+                        asked_of('steps', questions), tell))
     judged.robot = start
     return judged
 
@@ -70,7 +80,7 @@ def order(target: Union[Robot, Path], *, start: Optional[Cells] = None, reach: s
           reverse: bool = False,
           exact: bool = False, seed: int = 0, seconds: float = 300, help_seconds: float = 0,
           threads: int = 0, safety_factor: Optional[float] = None,
-          progress: Progress = None) -> Order:
+          progress: Progress = None, **questions: Unpack[PlanQuestions]) -> Order:
     """In which order can a robot be built so that it is safe all the way?
 
     Parameters
@@ -100,6 +110,8 @@ def order(target: Union[Robot, Path], *, start: Optional[Cells] = None, reach: s
         As of `Robot.check`.
     progress
         Called with (states, modules now, modules at the furthest state).
+    questions
+        `PlanQuestions` of the order that is found: `Order.reliability` and `Order.lose_one`.
 
     >>> order(Robot([[0, 0, 0], [1, 0, 0], [0, 0, 1]]))
     <holdfast.Order found: 2 steps>
@@ -107,19 +119,21 @@ def order(target: Union[Robot, Path], *, start: Optional[Cells] = None, reach: s
     with told(progress, 'order') as tell:
         found: Order = Order._of(_core.order(_robot(target)._asked(safety_factor), start,
                                              reach, source, avoid, group, reverse, exact, seed,
-                                             seconds, help_seconds, threads, tell))
+                                             seconds, help_seconds, threads,
+                                             asked_of('order', questions), tell))
     return found
 
 
 def move(start: Union[Robot, Path], target: Union[Robot, Path], *, pivots: bool = False,
          within: Optional[Cells] = None, ignores_mechanics: bool = False, seed: int = 0,
          seconds: float = 300, threads: int = 0, safety_factor: Optional[float] = None,
-         progress: Progress = None) -> Moves:
+         progress: Progress = None, **questions: Unpack[PlanQuestions]) -> Moves:
     """How does a robot get from one shape to another, module by module?
 
     `pivots`: modules are cubes that turn about edges. `within`: two cells, the corners of a box
     that modules stay in. `safety_factor`: as of `Robot.check`. `progress` is called with (moves
-    judged, moves to the target at least).
+    judged, moves to the target at least). `PlanQuestions` are asked of the plan that is found:
+    `Moves.reliability` and `Moves.lose_one`.
 
     >>> row = Robot([[0, 0, 0], [1, 0, 0], [2, 0, 0]])
     >>> move(row, Robot([[0, 0, 0], [1, 0, 0], [1, 0, 1]]))
@@ -129,5 +143,5 @@ def move(start: Union[Robot, Path], target: Union[Robot, Path], *, pivots: bool 
         found: Moves = Moves._of(_core.move(_robot(start)._asked(safety_factor),
                                             _robot(target)._asked(safety_factor), pivots,
                                             within, ignores_mechanics, seed, seconds, threads,
-                                            tell))
+                                            asked_of('move', questions), tell))
     return found

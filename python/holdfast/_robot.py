@@ -7,7 +7,7 @@ import json
 import math
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, Optional, Union
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -19,8 +19,12 @@ from ._failures import Cascade, LoseOne, cascade_of, lose_one_of
 from ._figures import Path
 from ._given import (Cell, Cells, Table, cell_of, counted, floats, head_of, json_of, level, listed,
                      load_list, obstacle_list, own_parts, reading)
+from ._plan_failures import PlanQuestions, asked_of
 from ._progress import Progress, told
 from ._report import Report
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 
 class Robot:
@@ -232,11 +236,14 @@ class Robot:
 
     def next(self, *, threads: int = 0, memory: float = 4, bonded: bool = False,
              exact: bool = False, seconds: float = math.inf,
-             safety_factor: Optional[float] = None, progress: Progress = None) -> Places:
+             safety_factor: Optional[float] = None, progress: Progress = None,
+             **questions: Unpack[PlanQuestions]) -> Places:
         """Where may the next module go? Judges every free cell beside the robot.
 
         Most places of robots of more than 3,000 modules are certified by a bound of the load ratio;
-        `exact` finds it for all. After `seconds` the search ends with what is judged by then.
+        `exact` finds it for all. After `seconds` the search ends with what is judged by then. With
+        `PlanQuestions` a place is safe only if the robot with a module there holds with
+        ``probability``, or whatever is lost: `Places.reliability`, `Places.lose_one`.
 
         >>> Robot([[0, 0, 0], [1, 0, 0]]).next().safe.shape
         (8, 3)
@@ -244,7 +251,7 @@ class Robot:
         with told(progress, 'next', is_counted=True) as tell:
             places: Places = Places._of(
                 _core.next(self._asked(safety_factor), threads, memory, bonded, exact, seconds,
-                           tell))
+                           asked_of('next', questions), tell))
         return places
 
     def simulate(self, *, link: str = 'v1', method: str = 'auto', seed: int = 1,
@@ -317,7 +324,7 @@ class Robot:
                                   'its own, which steps cannot say; expected a robot without it')
         there = {cell_of(module) for module in document['modules']} | attached
         document['loads'] = [load for load in document.get('loads', []) if cell_of(load) in there]
-        return self._as_safe(self.from_text(json_of(document), name=self.name))
+        return self.from_text(json_of(document), name=self.name)
 
     @property
     def step_count(self) -> int:
@@ -334,12 +341,13 @@ class Robot:
 
     @property
     def safety_factor(self) -> float:
-        """What all strengths are divided by; 1 unless `with_safety_factor` says otherwise."""
+        """What all strengths are divided by; 1 unless its file or `with_safety_factor` says
+        otherwise."""
         return self._held.safety_factor
 
     def with_safety_factor(self, factor: float) -> Robot:
         """The same robot with all strengths divided by a factor: safe is what would be safe under
-        all loads times it. It is no part of a file: `json` does not have it.
+        all loads times it. Files keep it.
 
         >>> tower = Robot([[0, 0, 0], [0, 0, 1]]).with_safety_factor(2)
         >>> tower.safety_factor, tower.attached().safety_factor
@@ -351,11 +359,6 @@ class Robot:
         """What is judged if somebody asks for a safety factor, or for none."""
         return (self._held if safety_factor is None
                 else self._held.with_safety_factor(safety_factor))
-
-    def _as_safe(self, other: Robot) -> Robot:
-        """Another robot, with the safety factor of this one."""
-        return (other if other.safety_factor == self.safety_factor
-                else other.with_safety_factor(self.safety_factor))
 
     def attached(self) -> Robot:
         """The same robot with its planned modules attached.
@@ -545,13 +548,11 @@ class Robot:
         return hash((self.name, len(self)))
 
     def __reduce__(self) -> Any:
-        return (Robot.from_text, (self.json(),), (self.name, self.safety_factor))
+        return (Robot.from_text, (self.json(),), self.name)
 
-    def __setstate__(self, state: tuple[str, float]) -> None:
-        if state[0] != self.name:
-            self._held = _core.Structure.load_text(self.json(), state[0], reading())
-        if state[1] != 1:
-            self._held = self._held.with_safety_factor(state[1])
+    def __setstate__(self, name: str) -> None:
+        if name != self.name:
+            self._held = _core.Structure.load_text(self.json(), name, reading())
 
     def __copy__(self) -> Robot:
         return self

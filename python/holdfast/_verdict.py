@@ -50,6 +50,14 @@ VERDICTS = tuple(Verdict)
 """By the number that the arrays have for them."""
 
 
+class Stage(Name):
+    """The three stages of a step (Sec. II-B)."""
+
+    RELEASE = 'release'
+    SHIFT = 'shift'
+    CONNECT = 'connect'
+
+
 class Judged:
     """What has a verdict. It has no truth value, as only one of the four verdicts is good news."""
 

@@ -12,6 +12,7 @@
 #include "holdfast/steps.hpp"
 #include "holdfast/trial.hpp"
 #include "long_work.hpp"
+#include "plan_failures_wish.hpp"
 
 /// Adds what may come next: places, steps, orders, moves.
 namespace holdfast::python {
@@ -26,6 +27,15 @@ struct Places {
 struct JudgedSteps {
   StepsFile file;
   StepsResult result;
+  PlanFailuresReport failures = {};
+};
+
+struct FoundOrder : io::OrderReport {
+  PlanFailuresReport failures = {};
+};
+
+struct FoundMoves : io::MoveReport {
+  PlanFailuresReport failures = {};
 };
 
 /// A judgement as numpy has it: not a number where nothing is known.
@@ -78,15 +88,37 @@ double seconds_of(const py::handle& given, const char* what) {
 
 std::shared_ptr<Places> next(const SharedStructure& structure, const py::handle& threads,
                              const py::handle& memory, bool is_bonded, bool is_exact,
-                             const py::handle& seconds, py::object progress) {
+                             const py::handle& seconds, const py::dict& asked,
+                             py::object progress) {
   expect_one_piece(*structure, "next()");
   Watch watch(std::move(progress));
   NextOptions options{.check = check_options(threads, memory, is_bonded),
                       .is_exact = is_exact,
                       .seconds_max = seconds_of(seconds, "seconds")};
   options.progress = [&](std::size_t done, std::size_t count) { watch(done, count); };
-  return without_gil(
-      watch, [&] { return std::make_shared<Places>(structure, find_next(*structure, options)); });
+  const PlanFailuresWish wish = plan_failures_wish(asked, options.check);
+  auto places = std::make_shared<Places>(structure, NextResult{});
+  NextResult& result = places->result;
+  const auto error = without_gil(watch, [&] {
+    result = find_next(*structure, options);
+    const NextFailuresLimits limits{.seconds_max = options.seconds_max - result.seconds};
+    return wish.is_wanted() ? find_next_failures(*structure, wish, limits, result) : std::nullopt;
+  });
+  take(error, {});
+  return places;
+}
+
+/// The probabilities that candidates hold, or no number, and the losses that bring them down, or
+/// None.
+py::tuple place_failures(const Places& places) {
+  py::list probabilities;
+  py::list losses;
+  for (const Trial& trial : places.result.candidates) {
+    probabilities.append(trial.failures.probability_holds.value_or(kNone));
+    losses.append(trial.failures.fatal_loss.empty() ? py::object(py::none())
+                                                    : py::str(trial.failures.fatal_loss));
+  }
+  return py::make_tuple(probabilities, losses);
 }
 
 py::array candidates(const Places& places) {
@@ -123,7 +155,7 @@ py::dict remedies(const SharedCheck& check, const py::handle& threads, const py:
 
 std::shared_ptr<JudgedSteps> steps(const SharedStructure& structure, const py::handle& threads,
                                    const py::handle& memory, bool ends_when_unsafe, bool is_exact,
-                                   py::object progress) {
+                                   const py::dict& asked, py::object progress) {
   const CheckOptions check = check_options(threads, memory, false);
   const std::size_t count = io::step_count(structure->document);
   if (count == 0) {
@@ -141,7 +173,10 @@ std::shared_ptr<JudgedSteps> steps(const SharedStructure& structure, const py::h
                                                         .warnings = {},
                                                         .origin = structure->origin},
                                               StepsResult{});
+  const PlanFailuresWish wish = plan_failures_wish(asked, check);
   judged->result = take(without_gil(watch, [&] { return judge_steps(judged->file, options); }));
+  judged->failures =
+      take(without_gil(watch, [&] { return report_plan_failures(judged->file.document, wish); }));
   return judged;
 }
 
@@ -160,12 +195,18 @@ std::optional<std::pair<std::size_t, int>> place_of(const std::optional<plan::St
   return id ? std::optional(std::pair(id->step, static_cast<int>(id->stage))) : std::nullopt;
 }
 
-std::shared_ptr<io::OrderReport> order(const Structure& target, const py::handle& start,
-                                       const py::handle& reach_name, const py::handle& source,
-                                       const py::handle& avoid, const py::handle& group,
-                                       bool is_reversed, bool is_exact, const py::handle& seed,
-                                       const py::handle& seconds, const py::handle& help_seconds,
-                                       const py::handle& threads, py::object progress) {
+/// The start with an order as its steps.
+io::Document order_document(const FoundOrder& report) {
+  return take(io::order_steps(report.target, report.result.order, report.is_reversed));
+}
+
+std::shared_ptr<FoundOrder> order(const Structure& target, const py::handle& start,
+                                  const py::handle& reach_name, const py::handle& source,
+                                  const py::handle& avoid, const py::handle& group,
+                                  bool is_reversed, bool is_exact, const py::handle& seed,
+                                  const py::handle& seconds, const py::handle& help_seconds,
+                                  const py::handle& threads, const py::dict& asked,
+                                  py::object progress) {
   Watch watch(std::move(progress));
   OrderRequest request;
   request.group_size = integer_of(group, "group", 1, 16);
@@ -197,12 +238,18 @@ std::shared_ptr<io::OrderReport> order(const Structure& target, const py::handle
   request.progress = [&](std::size_t states, std::size_t grown, std::size_t shrunk) {
     watch(states, grown, shrunk);
   };
-  return std::make_shared<io::OrderReport>(
-      take(without_gil(watch, [&] { return seek_order(target.document, request); })));
+  const PlanFailuresWish wish = plan_failures_wish(asked, {.thread_count = request.thread_count});
+  auto found = std::make_shared<FoundOrder>(
+      FoundOrder{take(without_gil(watch, [&] { return seek_order(target.document, request); }))});
+  if (found->result.order.outcome == plan::OrderOutcome::kFound && wish.is_wanted()) {
+    const io::Document steps = order_document(*found);
+    found->failures = take(without_gil(watch, [&] { return report_plan_failures(steps, wish); }));
+  }
+  return found;
 }
 
 /// Cells of the target's modules.
-py::array cells_in(const io::OrderReport& report, const auto& elements) {
+py::array cells_in(const FoundOrder& report, const auto& elements) {
   std::vector<base::Cell> cells;
   for (const auto element : elements) {
     cells.push_back(report.task.target.existing[static_cast<std::size_t>(element)]);
@@ -211,7 +258,7 @@ py::array cells_in(const io::OrderReport& report, const auto& elements) {
 }
 
 /// The batches as they are attached, or as they are detached where the robot is taken apart.
-py::list order_batches(const io::OrderReport& report) {
+py::list order_batches(const FoundOrder& report) {
   py::list out;
   for (const plan::Batch& batch : report.result.order.steps) {
     out.append(cells_in(report, batch));
@@ -222,7 +269,7 @@ py::list order_batches(const io::OrderReport& report) {
   return out;
 }
 
-py::array order_judgements(const io::OrderReport& report) {
+py::array order_judgements(const FoundOrder& report) {
   std::vector<JudgementRow> rows;
   for (const plan::Judgement& judgement : report.result.order.judgements) {
     rows.push_back(solved_row_of(judgement));
@@ -233,23 +280,22 @@ py::array order_judgements(const io::OrderReport& report) {
   return rows_of(rows, false);
 }
 
-SharedStructure order_as_steps(const io::OrderReport& report) {
+SharedStructure order_as_steps(const FoundOrder& report) {
   const plan::Order& order = report.result.order;
   if (order.outcome != plan::OrderOutcome::kFound && order.steps.empty()) {
     throw Error("no order was found");
   }
-  auto document = take(io::order_steps(report.target, order, report.is_reversed));
-  return std::make_shared<const Structure>(take(make_structure(std::move(document))));
+  return std::make_shared<const Structure>(take(make_structure(order_document(report))));
 }
 
-std::string order_certificate(const io::OrderReport& report) {
+std::string order_certificate(const FoundOrder& report) {
   if (!report.result.certificate) {
     throw Error("there is no certificate, as it was not proved that there is no order");
   }
   return io::write_order_certificate(report.target, *report.result.certificate);
 }
 
-py::object order_help(const io::OrderReport& report) {
+py::object order_help(const FoundOrder& report) {
   if (!report.help) {
     return py::none();
   }
@@ -263,10 +309,11 @@ py::object order_help(const io::OrderReport& report) {
   return out;
 }
 
-std::shared_ptr<io::MoveReport> move(const Structure& start, const Structure& target, bool pivots,
-                                     const py::handle& within, bool ignores_mechanics,
-                                     const py::handle& seed, const py::handle& seconds,
-                                     const py::handle& threads, py::object progress) {
+std::shared_ptr<FoundMoves> move(const Structure& start, const Structure& target, bool pivots,
+                                 const py::handle& within, bool ignores_mechanics,
+                                 const py::handle& seed, const py::handle& seconds,
+                                 const py::handle& threads, const py::dict& asked,
+                                 py::object progress) {
   Watch watch(std::move(progress));
   MoveRequest request{.pivots = pivots,
                       .ignores_mechanics = ignores_mechanics,
@@ -284,12 +331,18 @@ std::shared_ptr<io::MoveReport> move(const Structure& start, const Structure& ta
                       .high = {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}};
   }
   request.progress = [&](std::size_t states, int distance) { watch(states, distance); };
-  return std::make_shared<io::MoveReport>(take(
-      without_gil(watch, [&] { return seek_moves(start.document, target.document, request); })));
+  const PlanFailuresWish wish = plan_failures_wish(asked, {.thread_count = request.thread_count});
+  auto found = std::make_shared<FoundMoves>(FoundMoves{take(
+      without_gil(watch, [&] { return seek_moves(start.document, target.document, request); }))});
+  if (found->plan.outcome == plan::MoveOutcome::kFound) {
+    found->failures = take(
+        without_gil(watch, [&] { return report_plan_failures(io::move_steps(*found), wish); }));
+  }
+  return found;
 }
 
 /// The moves of every step, each as from, to, and carrier or None.
-py::list move_steps(const io::MoveReport& report) {
+py::list move_steps(const FoundMoves& report) {
   const auto triple = [](const base::Cell& cell) { return py::make_tuple(cell.x, cell.y, cell.z); };
   py::list out;
   for (const model::Step& step : report.plan.steps) {
@@ -303,7 +356,7 @@ py::list move_steps(const io::MoveReport& report) {
   return out;
 }
 
-SharedStructure move_as_steps(const io::MoveReport& report) {
+SharedStructure move_as_steps(const FoundMoves& report) {
   return std::make_shared<const Structure>(take(make_structure(io::move_steps(report))));
 }
 
@@ -320,6 +373,7 @@ void add_places(py::module_& module) {
   py::class_<Places, std::shared_ptr<Places>>(module, "Places")
       .def_property_readonly("structure", [](const Places& p) { return p.structure; })
       .def_property_readonly("candidates", &candidates)
+      .def_property_readonly("failures", &place_failures)
       .def_property_readonly("check_count", [](const Places& p) { return p.result.check_count; })
       .def_property_readonly("open_count", [](const Places& p) { return p.result.open_count; })
       .def_property_readonly("seconds", [](const Places& p) { return p.result.seconds; })
@@ -365,10 +419,14 @@ void add_steps(py::module_& module) {
       .def_property_readonly("seconds", [](const JudgedSteps& s) { return s.result.seconds; })
       .def("json",
            [](const JudgedSteps& s) {
-             return written_text(
-                 [&](std::ostream& out) { write_steps_json(out, s.file, s.result); });
+             return written_text([&](std::ostream& out) {
+               write_steps_json(out, s.file, s.result, s.failures.members);
+             });
            })
-      .def("text", [](const JudgedSteps& s) { return steps_text(s.file, s.result); })
+      .def("text",
+           [](const JudgedSteps& s) { return steps_text(s.file, s.result) + s.failures.text; })
+      .def_property_readonly("failures",
+                             [](const JudgedSteps& s) { return s.failures.member_text; })
       .def("svg",
            [](const JudgedSteps& s, const io::FigureOptions& figure) {
              return steps_svg(s.file, s.result, figure);
@@ -396,51 +454,58 @@ void add_steps(py::module_& module) {
 }
 
 void add_order(py::module_& module) {
-  using io::OrderReport;
-  py::class_<OrderReport, std::shared_ptr<OrderReport>>(module, "Order")
+  py::class_<FoundOrder, std::shared_ptr<FoundOrder>>(module, "Order")
       .def_property_readonly("outcome",
-                             [](const OrderReport& r) { return io::name(r.result.order.outcome); })
+                             [](const FoundOrder& r) { return io::name(r.result.order.outcome); })
       .def_property_readonly(
-          "start",
-          [](const OrderReport& r) { return cells_in(r, r.result.order.start.elements()); })
+          "start", [](const FoundOrder& r) { return cells_in(r, r.result.order.start.elements()); })
       .def_property_readonly("batches", &order_batches)
       .def_property_readonly("judgements", &order_judgements)
       .def_property_readonly("state_count",
-                             [](const OrderReport& r) { return r.result.order.state_count; })
+                             [](const FoundOrder& r) { return r.result.order.state_count; })
       .def_property_readonly("load_ratio_max",
-                             [](const OrderReport& r) { return r.result.load_ratio_max; })
+                             [](const FoundOrder& r) { return r.result.load_ratio_max; })
       .def_property_readonly("load_ratio_bound",
-                             [](const OrderReport& r) { return r.result.load_ratio_bound; })
+                             [](const FoundOrder& r) { return r.result.load_ratio_bound; })
       .def_property_readonly("margin_min_mm",
-                             [](const OrderReport& r) { return r.result.margin_min_mm; })
-      .def_property_readonly("seconds", [](const OrderReport& r) { return r.seconds; })
+                             [](const FoundOrder& r) { return r.result.margin_min_mm; })
+      .def_property_readonly("seconds", [](const FoundOrder& r) { return r.seconds; })
       .def_property_readonly("help", &order_help)
       .def("as_steps", &order_as_steps)
       .def("certificate", &order_certificate)
-      .def("json", [](const OrderReport& r) { return io::order_json(r); })
-      .def("csv", &io::order_csv)
-      .def("html", [](const OrderReport& r) { return without_gil([&] { return order_html(r); }); })
-      .def("text", [](const OrderReport& r) { return io::order_text(r); });
+      .def("json", [](const FoundOrder& r) { return io::order_json(r, r.failures.member_list()); })
+      .def("csv", [](const FoundOrder& r) { return io::order_csv(r); })
+      .def("html",
+           [](const FoundOrder& r) {
+             return without_gil([&] { return order_html(r, r.failures.text); });
+           })
+      .def("text", [](const FoundOrder& r) { return io::order_text(r) + r.failures.text; })
+      .def_property_readonly("failures",
+                             [](const FoundOrder& r) { return r.failures.member_text; });
   module.def("order", &order);
 }
 
 void add_move(py::module_& module) {
-  using io::MoveReport;
-  py::class_<MoveReport, std::shared_ptr<MoveReport>>(module, "Moves")
+  py::class_<FoundMoves, std::shared_ptr<FoundMoves>>(module, "Moves")
       .def_property_readonly("outcome",
-                             [](const MoveReport& r) { return plan::name(r.plan.outcome); })
+                             [](const FoundMoves& r) { return plan::name(r.plan.outcome); })
       .def_property_readonly("steps", &move_steps)
-      .def_property_readonly("is_shortest", [](const MoveReport& r) { return r.plan.is_shortest; })
-      .def_property_readonly("length_min", [](const MoveReport& r) { return r.plan.length_min; })
+      .def_property_readonly("is_shortest", [](const FoundMoves& r) { return r.plan.is_shortest; })
+      .def_property_readonly("length_min", [](const FoundMoves& r) { return r.plan.length_min; })
       .def_property_readonly("assignment_bound",
-                             [](const MoveReport& r) { return r.plan.assignment_bound; })
-      .def_property_readonly("state_count", [](const MoveReport& r) { return r.plan.state_count; })
-      .def_property_readonly("seconds", [](const MoveReport& r) { return r.seconds; })
+                             [](const FoundMoves& r) { return r.plan.assignment_bound; })
+      .def_property_readonly("state_count", [](const FoundMoves& r) { return r.plan.state_count; })
+      .def_property_readonly("seconds", [](const FoundMoves& r) { return r.seconds; })
       .def("as_steps", &move_as_steps)
-      .def("json", [](const MoveReport& r) { return io::move_json(r); })
-      .def("csv", &io::move_csv)
-      .def("html", [](const MoveReport& r) { return without_gil([&] { return move_html(r); }); })
-      .def("text", [](const MoveReport& r) { return io::move_text(r); });
+      .def("json", [](const FoundMoves& r) { return io::move_json(r, r.failures.member_list()); })
+      .def("csv", [](const FoundMoves& r) { return io::move_csv(r); })
+      .def("html",
+           [](const FoundMoves& r) {
+             return without_gil([&] { return move_html(r, r.failures.text); });
+           })
+      .def("text", [](const FoundMoves& r) { return io::move_text(r) + r.failures.text; })
+      .def_property_readonly("failures",
+                             [](const FoundMoves& r) { return r.failures.member_text; });
   module.def("move", &move);
 }
 

@@ -192,12 +192,12 @@ SharedStructure attached(const Structure& structure) {
 
 /// The robot with strengths that are divided by a factor, in place of one that it has.
 SharedStructure with_safety_factor(const Structure& structure, double factor) {
-  if (!(factor >= 1 && factor <= 1000)) {
+  if (!(factor >= 1 && factor <= io::kSafetyFactorMax)) {
     throw Error("safety_factor: expected a number from 1 to 1000, found " +
                 std::string(py::str(py::float_(factor))));
   }
   io::Document document = structure.document;
-  document.safety_factor = factor;
+  document.extension.safety_factor = factor;
   return share(without_gil([&] { return make_structure(std::move(document), structure.name); }));
 }
 
@@ -376,7 +376,7 @@ void add_readers(py::class_<Structure, std::shared_ptr<Structure>>& type) {
       .def("attached", &attached)
       .def("with_safety_factor", &with_safety_factor)
       .def_property_readonly("safety_factor",
-                             [](const Structure& s) { return s.document.safety_factor; });
+                             [](const Structure& s) { return s.document.extension.safety_factor; });
 }
 
 }  // namespace

@@ -103,6 +103,54 @@ expect_line out '^  load ratio   0[.]9603'
 expect_exit 1 check "$safe" --margin 1.6
 expect_usage '^holdfast check: --safety-factor' check "$safe" --safety-factor 0.5
 expect_exit 0 next "$safe" --safety-factor 1.2
+
+# The file states it: every command that reads it divides, an option replaces it, copies keep it.
+python3 - "$safe" factor.json <<'END'
+import json
+import sys
+structure = json.load(open(sys.argv[1]))
+structure.pop('known_answer', None)
+json.dump({**structure, 'version': 2, 'safety_factor': 1.6}, open(sys.argv[2], 'w'))
+END
+expect_exit 0 convert factor.json copy.json
+expect_exit 0 convert copy.json copy.xml
+expect_exit 0 convert copy.xml copy.holdfast
+expect_exit 0 convert copy.holdfast again.json
+for file in factor.json copy.json copy.xml copy.holdfast again.json; do
+  expect_exit 1 check "$file"
+  expect_line out '^  note +strengths are divided by 1.6, the safety factor, and load ratios'
+  expect_exit 0 check "$file" --safety-factor 1.5
+  expect_line err 'divided by 1.5, the safety factor in place of the file.s 1.6,'
+  expect_exit 0 check "$file" --safety-factor 1
+  expect_line err 'the safety factor is set to 1 in place of the file.s 1.6 by an option'
+done
+answer_of() { # the exit status, and the lines that say how loaded and how sure it is
+  local code=0
+  "$program" "$@" >out 2>err </dev/null || code=$?
+  echo "$code"
+  grep -E 'load ratio|reliability| mm  [(]' out || true
+}
+for command in 'check --scatter 10%' next steps 'order --help-seconds 0' simulate; do
+  # shellcheck disable=SC2086  # Words of a command.
+  [ "$(answer_of $command "$safe" --safety-factor 1.6)" = "$(answer_of $command factor.json)" ] ||
+    fault "$command differs where the file states the safety factor"
+  # shellcheck disable=SC2086
+  [ "$(answer_of $command "$safe")" != "$(answer_of $command factor.json)" ] ||
+    fault "$command knows no safety factor"
+done
+python3 - "$scenarios"/plan/around_arm_{from,to}.json <<'END'
+import json
+import sys
+for path, name, factor in zip(sys.argv[1:], ('from', 'to'), (1000, 999)):
+    json.dump({**json.load(open(path)), 'version': 2, 'safety_factor': factor},
+              open(f'{name}.json', 'w'))
+END
+expect_exit 65 move from.json "$scenarios/plan/around_arm_to.json" --seconds 20
+expect_line err 'the robot is overload before any step'
+expect_exit 65 move "$scenarios/plan/around_arm_from.json" to.json --seconds 20
+expect_line err 'the robot is overload before any step'
+expect_exit 65 move from.json to.json
+expect_line err 'the safety factor of the robot is 1000 and that of the target 999, expected one'
 expect_exit 0 generate crane 6 -o arm.json
 expect_exit 0 order arm.json --strength-needed
 expect_line out '^  strength    an order needs'

@@ -77,9 +77,8 @@ base::Result<std::string> find_page() {
 base::Result<std::string> fill_page(std::string_view page, const Structure& structure,
                                     const std::optional<std::string>& report,
                                     const std::optional<limit::LimitLoad>& limit) {
-  nlohmann::ordered_json start = {
-      {"structure", io::write_json(io::with_allowed_strengths(structure.document))},
-      {"name", structure.name}};
+  nlohmann::ordered_json start = {{"structure", io::write_json(structure.document)},
+                                  {"name", structure.name}};
   if (report) {
     start["report"] = *report;
   }

@@ -24,30 +24,17 @@ PlanFailuresWish plan_failures_wish(const PlanFailureOptions& options, const Che
 base::Result<PlanFailureAnswer> find_plan_failures(const io::Document& document,
                                                    const PlanFailureOptions& options,
                                                    int thread_count, Progress& progress) {
-  PlanFailureAnswer answer;
-  if (!options.is_wanted()) {
-    return answer;
+  auto report = report_plan_failures(
+      document, plan_failures_wish(options, {.thread_count = thread_count}, progress, "step"));
+  if (!report) {
+    return report.error();
   }
-  const PlanFailuresWish wish =
-      plan_failures_wish(options, {.thread_count = thread_count}, progress, "step");
-  const auto found = holdfast::find_plan_failures(document, wish);
-  if (!found) {
-    return found.error();
-  }
-  answer.text = plan_failures_text(wish, found.value());
-  answer.members = [wish, report = found.value()](io::JsonStream& json) {
-    write_plan_failures_members(json, wish, report);
-  };
-  io::JsonStream json(answer.member_text, io::JsonStream::Layout::kLine);
-  json.begin_object();
-  answer.members(json);
-  json.end_object();
-  answer.member_text = answer.member_text.substr(1, answer.member_text.size() - 2);
-  answer.exit_code = found.value().fails()          ? kExitUnsafe
-                     : found.value().is_uncertain() ? kExitUndecided
-                                                    : kExitSafe;
-  if (options.scatter.probability <= 0 && !found.value().first_fatal &&
-      !found.value().first_undecided) {
+  PlanFailureAnswer answer{std::move(report).value()};
+  const PlanFailures& found = answer.found;
+  answer.exit_code = found.fails()          ? kExitUnsafe
+                     : found.is_uncertain() ? kExitUndecided
+                                            : kExitSafe;
+  if (options.scatter.probability <= 0 && !found.first_fatal && !found.first_undecided) {
     answer.exit_code = kExitSafe;
   }
   return answer;
@@ -61,9 +48,9 @@ void add_safety_factor(CLI::App& command, io::ReadOptions& reading) {
   command
       .add_option("--safety-factor,--margin", reading.safety_factor,
                   "Divide all strengths by this: safe is what would be safe under all loads times "
-                  "it")
+                  "it; without it by what the file states")
       ->type_name("FACTOR")
-      ->check(number_between(1.0, 1000.0));
+      ->check(number_between(1.0, io::kSafetyFactorMax));
 }
 
 }  // namespace holdfast::cli

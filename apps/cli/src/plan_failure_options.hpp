@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "holdfast/plan_failures.hpp"
 #include "lose_one_options.hpp"
 #include "progress.hpp"
@@ -28,16 +25,8 @@ PlanFailuresWish plan_failures_wish(const PlanFailureOptions& options, const Che
                                     Progress& progress, const char* what);
 
 /// The answer to them, for reports.
-struct PlanFailureAnswer {
-  std::string text;
-  std::string member_text;  ///< "key": value, of all members; empty if nothing is asked for.
-  io::MoreKeys members;
+struct PlanFailureAnswer : PlanFailuresReport {
   int exit_code = kExitSafe;
-
-  /// The members as a list of one or none.
-  std::vector<std::string> member_list() const {
-    return member_text.empty() ? std::vector<std::string>() : std::vector{member_text};
-  }
 };
 
 /// Looks at all stages of a document with steps, if anything is asked for.

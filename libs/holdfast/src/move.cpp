@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/move.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -9,6 +12,21 @@
 
 namespace holdfast {
 namespace {
+
+/// Both ends with the safety factor that either states.
+base::Result<std::pair<io::Document, io::Document>> with_one_factor(io::Document start,
+                                                                    io::Document target) {
+  double& from = start.extension.safety_factor;
+  double& to = target.extension.safety_factor;
+  if (from != to && from != 1 && to != 1) {
+    return base::bad_input(
+        fmt::format("the safety factor of the robot is {} and that of the target {}, expected one "
+                    "for both",
+                    from, to));
+  }
+  from = to = std::max(from, to);
+  return std::pair(std::move(start), std::move(target));
+}
 
 base::Result<plan::MoveTask> task_of(const io::Document& start, const io::Document& target,
                                      const MoveRequest& request) {
@@ -25,8 +43,14 @@ base::Result<plan::MoveTask> task_of(const io::Document& start, const io::Docume
 
 }  // namespace
 
-base::Result<io::MoveReport> seek_moves(const io::Document& start, const io::Document& target,
+base::Result<io::MoveReport> seek_moves(const io::Document& start_stated,
+                                        const io::Document& target_stated,
                                         const MoveRequest& request) {
+  const auto ends = with_one_factor(start_stated, target_stated);
+  if (!ends) {
+    return ends.error();
+  }
+  const auto& [start, target] = ends.value();
   auto task = task_of(start, target, request);
   if (!task) {
     return task.error();
@@ -49,8 +73,14 @@ base::Result<io::MoveReport> seek_moves(const io::Document& start, const io::Doc
   return report;
 }
 
-base::Result<ProvedMoves> verify_moves(const io::Document& start, const io::Document& target,
+base::Result<ProvedMoves> verify_moves(const io::Document& start_stated,
+                                       const io::Document& target_stated,
                                        const MoveRequest& request, std::string_view report) {
+  const auto ends = with_one_factor(start_stated, target_stated);
+  if (!ends) {
+    return ends.error();
+  }
+  const auto& [start, target] = ends.value();
   auto task = task_of(start, target, request);
   if (!task) {
     return task.error();

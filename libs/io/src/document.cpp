@@ -71,17 +71,26 @@ base::Result<ReadDocument> with_support(base::Result<ReadDocument> read,
   return ReadDocument{std::move(document), std::move(warnings)};
 }
 
-/// Takes the safety factor that an option says.
+/// Takes the safety factor that an option says, and says what it is.
 base::Result<ReadDocument> with_factor(base::Result<ReadDocument> read,
                                        const ReadOptions& options) {
-  if (!read || options.safety_factor == 1) {
+  if (!read) {
     return read;
   }
   auto [document, warnings] = std::move(read).value();
-  document.safety_factor = options.safety_factor;
-  warnings.push_back(fmt::format(
-      "strengths are divided by {}, the safety factor, and load ratios refer to what is left",
-      options.safety_factor));
+  const double stated = document.extension.safety_factor;
+  const double factor = options.safety_factor.value_or(stated);
+  document.extension.safety_factor = factor;
+  const std::string other =
+      stated != 1 && factor != stated ? fmt::format(" in place of the file's {}", stated) : "";
+  if (factor != 1) {
+    warnings.push_back(
+        fmt::format("strengths are divided by {}, the safety factor{}, and load ratios refer to "
+                    "what is left",
+                    factor, other));
+  } else if (!other.empty()) {
+    warnings.push_back(fmt::format("the safety factor is set to 1{} by an option", other));
+  }
   return ReadDocument{std::move(document), std::move(warnings)};
 }
 

@@ -31,7 +31,7 @@ Document read(std::string_view members) {
 }
 
 constexpr std::string_view kWhole = R"(
-  "lattice": "face-centred", "support_z": -2, "floor": {"friction": 0.5},
+  "lattice": "face-centred", "safety_factor": 1.25, "support_z": -2, "floor": {"friction": 0.5},
   "gravity_m_s2": [0, 1, -9.5],
   "material": {"mass_kg": 0.07, "shear_strength_n": 5, "foot_mm": 20, "bending": "round",
                "strength_n": [1, 2, 3, 4, 5, null], "lever_mm": {"lateral": 6}},
@@ -54,6 +54,7 @@ TEST(Version2, is_read_whole) {
   expected.steps = {{{{1, 0, 1}, std::nullopt, {}}}, {{{1, 0, 2}, std::nullopt, {}}}};
   Extension& extension = expected.extension;
   extension.lattice = base::kFaceCentred;
+  extension.safety_factor = 1.25;
   extension.floor_friction = 0.5;
   extension.gravity_m_s2 = {0, 1, -9.5};
   extension.foot_mm = 20;
@@ -126,6 +127,31 @@ TEST(Version2, is_written_only_where_version_1_does_not_say_it_all) {
   EXPECT_NE(write_json(document).find(R"("version": 1)"), std::string::npos);
   EXPECT_EQ(accepted(read_json(write_json(document))).document, document);
   EXPECT_EQ(json_version(accepted(read_json(version_2(kWhole))).document), 2);
+}
+
+/// Every strength is divided; an option replaces the factor, and both are said.
+TEST(Version2, divides_strengths_by_the_safety_factor) {
+  const std::string text = version_2(R"("safety_factor": 1.25, "modules": [[0,0,0], [1,0,0]])");
+  const ReadDocument stated = accepted(read_document(text));
+  ASSERT_EQ(stated.warnings.size(), 1U);
+  EXPECT_NE(stated.warnings[0].find("divided by 1.25"), std::string::npos);
+  const double whole = model::Material{}.strength_lateral_n;
+  EXPECT_EQ(make_spec(stated.document).value().material.strength_lateral_n, whole / 1.25);
+  EXPECT_EQ(make_sequence(stated.document).value().start.material.strength_lateral_n, whole / 1.25);
+  const ReadDocument other = accepted(read_document(text, {.safety_factor = 2}));
+  EXPECT_EQ(make_spec(other.document).value().material.strength_lateral_n, whole / 2);
+  ASSERT_EQ(other.warnings.size(), 1U);
+  EXPECT_NE(other.warnings[0].find("in place of the file's 1.25"), std::string::npos);
+  const ReadDocument none = accepted(read_document(text, {.safety_factor = 1}));
+  EXPECT_EQ(make_spec(none.document).value().material.strength_lateral_n, whole);
+  ASSERT_EQ(none.warnings.size(), 1U);
+  EXPECT_NE(none.warnings[0].find("set to 1 in place of"), std::string::npos);
+  for (const char* const bad : {"0.99", "1000.1", "-1", "\"2\"", "null", "[1]"}) {
+    const auto read =
+        read_json(version_2(std::string("\"modules\": [[0,0,0]], \"safety_factor\": ") + bad));
+    ASSERT_FALSE(read) << bad;
+    EXPECT_EQ(read.error().where, "/safety_factor");
+  }
 }
 
 /// "-0" is an integer, which has no sign, so "-0.0" has none either.

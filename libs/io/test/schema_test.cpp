@@ -102,7 +102,8 @@ bool Schema::allows(const Json& rule, const Json& value) const {
 
 /// Every object of the format, with every member that goes together.
 const char* const kDocument = R"({"format": "holdfast-structure", "version": 2, "name": "all",
-  "description": "d", "lattice": "cubic", "support_z": 0, "floor": {"friction": 0.5},
+  "description": "d", "lattice": "cubic", "safety_factor": 2, "support_z": 0,
+  "floor": {"friction": 0.5},
   "gravity_m_s2": [0, 1, -1.62],
   "material": {"mass_kg": 0.05, "strength_n": {"vertical": 12, "lateral": 11}, "friction": 0.4,
                "lever_mm": [1, 2, 3], "bending": "round", "foot_mm": 3},

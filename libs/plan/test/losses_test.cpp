@@ -8,14 +8,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "bounds/loop_bound.hpp"
 #include "general_robot.hpp"
+#include "patches/patch_bound.hpp"
 #include "random_robot.hpp"
 #include "seeds.hpp"
 
@@ -125,6 +128,14 @@ model::RobotSpec only(model::RobotSpec spec, const std::vector<Cell>& cells) {
   spec.existing.insert(spec.existing.end(), spec.planned.begin(), spec.planned.end());
   spec.planned.clear();
   return spec;
+}
+
+/// All cells but that of a module that is lost.
+std::vector<Cell> cells_without(const model::RobotSpec& spec, const LostPart& part) {
+  std::vector<Cell> cells = spec.existing;
+  cells.insert(cells.end(), spec.planned.begin(), spec.planned.end());
+  std::erase_if(cells, [&](const Cell& cell) { return part.module && cell == part.loss.cells[0]; });
+  return cells;
 }
 
 bool is_held(const model::RobotSpec& spec, const std::vector<Cell>& piece) {
@@ -333,6 +344,47 @@ TEST(Losses, of_feet_and_of_modules_on_them_need_no_check) {
   }
 }
 
+/// Whenever time is up, what is answered is right, and the rest is undecided; work that takes
+/// longer, such as the inverse, is given up.
+TEST(Losses, that_time_does_not_suffice_for_are_undecided) {
+  model::RobotSpec spec;
+  constexpr std::int32_t kWidth = 11;
+  for (std::int32_t i = 0; i < kWidth * kWidth * kWidth; ++i) {
+    spec.existing.push_back({i % kWidth, i / kWidth % kWidth, i / kWidth / kWidth});
+  }
+  LossOptions options{.equilibrium = {.thread_count = 2}, .loop_count_min = 1000};
+  const LossReport all = lose_each(spec, options);
+  ASSERT_TRUE(all.whole.is_safe());
+  std::size_t undecided_count = 0;
+  for (int i = 0; i < 12; ++i) {
+    options.seconds_max = all.seconds * i / 12;
+    const LossReport some = lose_each(spec, options);
+    ASSERT_EQ(some.answers.size(), all.answers.size());
+    std::size_t left_count = 0;
+    for (std::size_t k = 0; k < all.answers.size(); ++k) {
+      EXPECT_EQ(some.answers[k].loss, all.answers[k].loss);
+      const bool is_left = some.answers[k].verdict == Verdict::kUndecided;
+      EXPECT_TRUE(is_left || some.answers[k].verdict == all.answers[k].verdict);
+      left_count += is_left ? 1 : 0;
+    }
+    EXPECT_EQ(some.undecided.size(), left_count);
+    EXPECT_LT(some.seconds, 1.2 * all.seconds + 1);
+    undecided_count += left_count;
+  }
+  EXPECT_GT(undecided_count, 0U);
+}
+
+/// What a caller's progress throws passes through, also while time is watched.
+TEST(Losses, are_given_up_by_whoever_is_told) {
+  model::RobotSpec spec;
+  for (std::int32_t i = 0; i < 64; ++i) {
+    spec.existing.push_back({i % 4, i / 4 % 4, i / 16});
+  }
+  LossOptions options{.equilibrium = {.thread_count = 2}, .seconds_max = 1000};
+  options.progress = [](std::size_t, std::size_t) { throw std::runtime_error("enough"); };
+  EXPECT_THROW(lose_each(spec, options), std::runtime_error);
+}
+
 /// No bound by loops is below what a check without the connection finds.
 TEST(Losses, by_loops_are_bounds_of_what_is_carried) {
   std::size_t compared_count = 0;
@@ -374,6 +426,95 @@ TEST(Losses, by_loops_are_bounds_of_what_is_carried) {
   }
   EXPECT_GT(lattice_count, 1);
   EXPECT_GT(compared_count, 100U);
+}
+
+/// How many losses of each kind were compared.
+using KindCounts = std::array<std::size_t, kLossKindCount>;
+
+/// No bound by patches is below what a check of a robot without the part finds.
+void expect_patch_bounds(const model::RobotSpec& spec, bool is_bonded, const std::string& what,
+                         KindCounts& counts) {
+  const model::Robot robot = model::Robot::create(spec).value();
+  solver::EquilibriumOptions options{.thread_count = 1};
+  options.is_bonded = is_bonded;
+  const verdict::Assessment solved = verdict::assess(robot, options);
+  const auto loops = LoopBound::make(spec, robot, solved, is_bonded);
+  if (!loops) {
+    return;
+  }
+  const PatchBound patches(robot, solved, *loops, is_bonded);
+  for (const LostPart& part : PartFinder(robot).find({true, true, true})) {
+    std::optional<double> bound;
+    for (const int hops : PatchBound::kHops) {
+      const auto one = patches.without(part, hops);
+      bound = one ? std::min(bound.value_or(*one), *one) : bound;
+    }
+    if (!bound) {
+      continue;
+    }
+    const auto left =
+        model::Robot::create(only(without(spec, part.loss), cells_without(spec, part)));
+    ASSERT_TRUE(left) << what << " " << text(part.loss);
+    const Judgement exact = judge(left.value(), options);
+    EXPECT_EQ(exact.verdict, Verdict::kSafe) << what << " " << text(part.loss);
+    EXPECT_LE(exact.load_ratio_max.value_or(0), *bound) << what << " " << text(part.loss);
+    ++counts.at(static_cast<std::size_t>(part.loss.kind));
+  }
+}
+
+TEST(Losses, by_patches_are_bounds_of_what_is_carried) {
+  KindCounts counts{};
+  int lattice_count = 0;
+  for (const base::Lattice& lattice : test::kLattices) {
+    for (const std::int32_t height : {3, 5}) {
+      model::RobotSpec block{.lattice = lattice};
+      for (std::int32_t i = 0; i < 5 * 5 * height; ++i) {
+        block.existing.push_back({i % 5, i / 5 % 5, i / 25});
+      }
+      if (!model::Robot::create(block)) {
+        continue;
+      }
+      ++lattice_count;
+      for (const bool is_bonded : {false, true}) {
+        expect_patch_bounds(with_ratio(block, 0.05), is_bonded, "block", counts);
+      }
+    }
+  }
+  EXPECT_GT(lattice_count, 2);
+  for (const std::size_t count : counts) {
+    EXPECT_GT(count, 30U);
+  }
+}
+
+/// Obstacles, bonds, payloads, kinds, laws, faces that are open, on every lattice.
+TEST(Losses, by_patches_are_bounds_on_all_lattices_and_supports) {
+  KindCounts counts{};
+  for (std::uint64_t seed = 0; seed < test::campaign(60U); ++seed) {
+    model::RobotSpec built = test::general_robot(test::kLattices[seed % 4], seed);
+    if (seed % 5 == 2) {
+      built = test::with_laws(std::move(built), seed);
+    } else if (seed % 5 == 3) {
+      built = test::with_open_faces(std::move(built), seed);
+    }
+    if (model::Robot::create(built)) {
+      expect_patch_bounds(with_ratio(built, 0.03), seed % 2 == 0, "seed " + std::to_string(seed),
+                          counts);
+    }
+  }
+  EXPECT_GT(counts[0] + counts[1] + counts[2], 30U);
+}
+
+TEST(Losses, by_patches_are_bounds_on_random_robots) {
+  KindCounts counts{};
+  for (std::uint64_t seed = 0; seed < test::campaign(48U); ++seed) {
+    model::RobotSpec spec = test::random_robot(seed, 12, seed % 4 == 3 ? 60 : 90);
+    if (seed % 4 == 3) {  // Held by what is fixed, too, besides feet.
+      spec.fixed = {spec.existing[seed % spec.existing.size()]};
+    }
+    expect_patch_bounds(with_ratio(spec, seed % 2 == 0 ? 0.02 : 0.1), seed % 3 == 0,
+                        "seed " + std::to_string(seed), counts);
+  }
+  EXPECT_GT(counts[0] + counts[1] + counts[2], 30U);
 }
 
 }  // namespace

@@ -36,6 +36,12 @@ constexpr double kShareMin = 1e-6;
 
 /// No larger factor is sought: a normal distribution of a large cv has too many strengths of zero.
 constexpr double kFactorMax = 1e9;
+/// No smaller one, as a share of the largest load ratio: all that is known holds with it.
+constexpr double kFactorMin = 1e-9;
+/// Bounds of factors are found to this share.
+constexpr double kBoundDigits = 1e-5;
+/// Halvings of an interval within 0 to 1, which leave nothing of it.
+constexpr int kChanceBisections = 60;
 
 /// How a strength scatters: its distribution and cv.
 using Law = std::pair<StrengthDistribution, double>;
@@ -148,15 +154,15 @@ class Cases {
         factor, [](double log_holds) { return -std::expm1(log_holds); }, 1);
   }
 
-  /// The probability that all hold, by case.
-  std::vector<double> each_holds(double unknown) const {
+  /// The probability that all hold with strengths times `factor`, by case.
+  std::vector<double> each_holds(double unknown, double factor = 1) const {
     std::vector<double> list;
     for (std::size_t i = 0; i < products_.size(); ++i) {
       list.push_back(states_[i] == CaseState::kFallen ? 0
                      : states_[i] == CaseState::kUnknown
                          ? unknown
                          : mean_over_common(scatter_, [&](double common) {
-                             return std::exp(products_[i].log_holds(common));
+                             return std::exp(products_[i].log_holds(common * factor));
                            }));
     }
     return list;
@@ -188,23 +194,30 @@ class Cases {
   std::vector<Product> products_;
 };
 
-/// The factor with which some connection fails with probability `fails`, by bisection.
-std::optional<double> strength_factor(const Cases& cases, double fails) {
-  if (cases.largest() == 0 || cases.fails(kFactorMax) > fails) {
+/// The factor with which some connection fails with probability `fails`, by bisection of
+/// `fails_with`, which says that probability by the factor; `start` is near it. None if no factor
+/// up to kFactorMax suffices, or any does.
+template <class FailsWith>
+std::optional<double> strength_factor(const FailsWith& fails_with, double start, double fails,
+                                      double digits) {
+  if (start == 0 || fails_with(kFactorMax) > fails) {
     return std::nullopt;
   }
-  double low = cases.largest();
-  while (cases.fails(low) < fails) {
+  double low = start;
+  while (fails_with(low) < fails) {
     low /= 2;
+    if (low < kFactorMin * start) {
+      return std::nullopt;
+    }
   }
   double high = 2 * low;
-  while (cases.fails(high) > fails) {
+  while (fails_with(high) > fails) {
     low = high;
     high *= 2;
   }
-  while (high - low > kFactorDigits * high) {
+  while (high - low > digits * high) {
     const double middle = 0.5 * (low + high);
-    (cases.fails(middle) > fails ? low : high) = middle;
+    (fails_with(middle) > fails ? low : high) = middle;
   }
   return high;
 }
@@ -291,8 +304,9 @@ constexpr double kSeenMin = 10;
 /// A load ratio that is farther from its limit, in standard deviations, does not come there.
 constexpr double kFarDeviations = 6;
 
-/// Whether masses that scatter as in the samples may bring any load ratio to the other side of 1.
-bool may_cross_limit(std::span<const LoadCase> cases) {
+/// Whether masses that scatter as in the samples may bring any load ratio to the other side of
+/// `limit`.
+bool may_cross_limit(std::span<const LoadCase> cases, double limit = 1) {
   std::vector<double> sum;
   std::vector<double> square;
   double count = 0;
@@ -310,7 +324,7 @@ bool may_cross_limit(std::span<const LoadCase> cases) {
   for (std::size_t i = 0; i < sum.size(); ++i) {
     const double mean = sum[i] / count;
     const double deviation = std::sqrt(std::max(0.0, square[i] / count - mean * mean));
-    if (std::abs(1 - mean) < kFarDeviations * deviation) {
+    if (std::abs(limit - mean) < kFarDeviations * deviation) {
       return true;
     }
   }
@@ -331,10 +345,67 @@ void doubt_rare_events(std::span<const LoadCase> cases, Reliability& found) {
   }
 }
 
+/// The other end of the interval in which a probability lies, surely but for 2.5 %, if the mean of
+/// `count` independent numbers from 0 to 1 of which it is the expectation is `mean`: the one with
+/// count KL(mean, p) = log 40 [Hoeffding 1963, Theorem 1], which for events that are never seen is
+/// that of the binomial distribution [Clopper 1934]. `direction`: 1 for the upper end, -1 for the
+/// lower one.
+double chance_bound(double mean, double count, double direction) {
+  const double allowed = std::log(40.0) / count;
+  const auto divergence = [mean](double p) {
+    const double of_event = mean > 0 ? mean * std::log(mean / p) : 0;
+    return of_event + (mean < 1 ? (1 - mean) * std::log((1 - mean) / (1 - p)) : 0);
+  };
+  double inner = mean;
+  double outer = direction > 0 ? 1 : 0;
+  for (int i = 0; i < kChanceBisections; ++i) {
+    const double middle = 0.5 * (inner + outer);
+    (divergence(middle) < allowed ? inner : outer) = middle;
+  }
+  return outer;
+}
+
+/// Bounds of the factors with which the robot fails with a probability, from samples.
+class FactorBounds {
+ public:
+  FactorBounds(std::span<const LoadCase> cases, const Cases& all, bool is_linear)
+      : cases_(cases), all_(all), is_linear_(is_linear) {}
+
+  FactorRange range(double fails) const {
+    const auto bound_with = [&](double direction) {
+      return strength_factor([&](double factor) { return fails_with(factor, direction); },
+                             all_.largest(), fails, kBoundDigits);
+    };
+    return {.low = bound_with(-1), .high = bound_with(1)};
+  }
+
+ private:
+  /// A bound of the probability that the robot fails. Where loads are linear in masses and none
+  /// comes near its limit, what samples say varies little, and their mean is normal; else it may be
+  /// any number from 0 to 1, and only how many there are counts. Of opposite samples both may fail,
+  /// so pairs are what is independent.
+  double fails_with(double factor, double direction) const {
+    const std::vector<double> holds = all_.each_holds(direction > 0 ? 0 : 1, factor);
+    const double sure = 1 - bound(holds, -direction);
+    if (is_linear_ && !may_cross_limit(cases_, factor)) {
+      return sure;
+    }
+    double mean = 0;
+    for (const double one : holds) {
+      mean += (1 - one) / static_cast<double>(holds.size());
+    }
+    return chance_bound(clamped(mean), static_cast<double>(holds.size()) / 2, direction);
+  }
+
+  std::span<const LoadCase> cases_;
+  const Cases& all_;
+  bool is_linear_;
+};
+
 }  // namespace
 
 Reliability find_reliability(std::span<const LoadCase> cases, const StrengthScatter& scatter,
-                             std::size_t likeliest_max) {
+                             std::size_t likeliest_max, bool is_linear) {
   const Cases all(cases, scatter);
   Reliability found{.scatter = scatter};
   found.fails = clamped(all.fails(1));
@@ -347,8 +418,19 @@ Reliability find_reliability(std::span<const LoadCase> cases, const StrengthScat
     doubt_rare_events(cases, found);
   }
   found.likeliest = likeliest(cases, scatter, found.fails, likeliest_max);
-  found.strength_factor_99 = strength_factor(all, 0.01);
-  found.strength_factor_999 = strength_factor(all, 0.001);
+  const auto fails_with = [&](double factor) { return all.fails(factor); };
+  const auto factor_of = [&](double fails) {
+    return strength_factor(fails_with, all.largest(), fails, kFactorDigits);
+  };
+  found.strength_factor_99 = factor_of(0.01);
+  found.strength_factor_999 = factor_of(0.001);
+  found.factor_range_99 = {.low = found.strength_factor_99, .high = found.strength_factor_99};
+  found.factor_range_999 = {.low = found.strength_factor_999, .high = found.strength_factor_999};
+  if (cases.size() > 1) {
+    const FactorBounds bounds(cases, all, is_linear);
+    found.factor_range_99 = bounds.range(0.01);
+    found.factor_range_999 = bounds.range(0.001);
+  }
   return found;
 }
 
@@ -384,7 +466,7 @@ std::optional<Reliability> find_reliability(const Assessment& assessment,
   const LoadCase one{.ratios = *std::move(ratios)};
   const auto cases =
       sampled.cases.empty() ? std::span(&one, 1) : std::span<const LoadCase>(sampled.cases);
-  Reliability found = find_reliability(cases, scatter, likeliest_max);
+  Reliability found = find_reliability(cases, scatter, likeliest_max, sampled.changed_count == 0);
   found.sample_count = sampled.cases.size();
   found.changed_count = sampled.changed_count;
   if (assessment.load_ratio_max) {

@@ -190,6 +190,91 @@ class Sampler {
   base::Rng rng_;
 };
 
+/// The factor with which a robot whose loads alone scatter holds with 0.99 or 0.999 is a quantile
+/// of its load ratio: of 1 + 0.05 z with z normal, and of 0.5 + x / 10 with x exponential, which is
+/// not linear in normal numbers. Each campaign of samples gives intervals, of which at 95 % not
+/// more may miss the quantile. Samples of a pair are independent, alike, or opposite.
+struct BoundCampaign {
+  std::array<int, 2> missed = {};  ///< For 0.99 and for 0.999.
+  std::array<int, 2> bounded = {};
+
+  void add(std::size_t which, const FactorRange& range, double truth) {
+    constexpr double kNear = 1e-3;  // Strengths of cv 1e-4 are not quite as given.
+    const bool is_within = range.low.value_or(0) <= truth * (1 + kNear) &&
+                           range.high.value_or(truth) >= truth * (1 - kNear);
+    missed.at(which) += is_within ? 0 : 1;
+    bounded.at(which) += range.high ? 1 : 0;
+  }
+};
+
+BoundCampaign bound_campaign(bool is_normal, int kind, int count, Sampler& sampler) {
+  const auto ratio = [is_normal](double z) {
+    return is_normal ? 1 + 0.05 * z : 0.5 - 0.1 * std::log(normal_below(-z));
+  };
+  BoundCampaign campaign;
+  for (int i = 0; i < count; ++i) {
+    std::vector<LoadCase> cases;
+    for (int pair = 0; pair < 512; ++pair) {
+      const double first = sampler.normal();
+      const double second = kind == 0 ? sampler.normal() : kind == 1 ? first : -first;
+      cases.push_back({.ratios = {ratio(first)}});
+      cases.push_back({.ratios = {ratio(second)}});
+    }
+    const Reliability found = find_reliability(cases, {.cv = kCvMin}, 1, is_normal);
+    campaign.add(0, found.factor_range_99, ratio(2.3263479));
+    campaign.add(1, found.factor_range_999, ratio(3.0902323));
+  }
+  return campaign;
+}
+
+TEST(Reliability, factors_lie_within_their_bounds_as_often_as_is_said) {
+  const int count = test::campaign(60);
+  const double allowed = 0.05 * count + 3 * std::sqrt(0.0475 * count);
+  Sampler sampler(4);
+  for (const bool is_normal : {true, false}) {
+    for (const int kind : {0, 1, 2}) {
+      const BoundCampaign found = bound_campaign(is_normal, kind, count, sampler);
+      EXPECT_LE(found.missed[0], allowed) << is_normal << kind;
+      EXPECT_LE(found.missed[1], allowed) << is_normal << kind;
+      EXPECT_EQ(found.bounded[0], count) << is_normal << kind;
+      EXPECT_EQ(found.bounded[1], is_normal ? count : 0) << "1,024 samples do not tell it";
+    }
+  }
+}
+
+/// Where strengths scatter more than loads a few samples suffice.
+TEST(Reliability, factors_of_smooth_probabilities_are_narrow) {
+  Sampler sampler(5);
+  std::vector<LoadCase> cases;
+  for (int pair = 0; pair < 512; ++pair) {
+    const double z = sampler.normal();
+    cases.push_back({.ratios = {0.8 * (1 + 0.01 * z)}});
+    cases.push_back({.ratios = {0.8 * (1 - 0.01 * z)}});
+  }
+  const Reliability found = find_reliability(cases, {.cv = 0.1}, 1, true);
+  // Of a product of two lognormal numbers the variances of the logarithms add.
+  const double variance = variance_of_log(0.1) + 0.01 * 0.01;
+  const double exact = 0.8 * std::exp(3.0902323 * std::sqrt(variance) + variance_of_log(0.1) / 2);
+  EXPECT_NEAR(*found.strength_factor_999, exact, 2e-3 * exact);
+  EXPECT_LT(*found.factor_range_999.low, *found.strength_factor_999);
+  EXPECT_GT(*found.factor_range_999.high, *found.strength_factor_999);
+  EXPECT_LT(*found.factor_range_999.high - *found.factor_range_999.low, 0.01);
+}
+
+TEST(Reliability, factors_have_no_bounds_where_too_few_samples_are_known) {
+  std::vector<LoadCase> cases(1024, {.ratios = {0.5}});
+  const Reliability found = find_reliability(cases, {.cv = kCvMin});
+  EXPECT_TRUE(found.factor_range_99.high);  // 0.99^512 is 0.006, below 0.025; 0.999^512 is 0.6.
+  EXPECT_FALSE(found.factor_range_999.high);
+  std::fill_n(cases.begin(), 8, LoadCase{.state = CaseState::kUnknown});
+  EXPECT_FALSE(find_reliability(cases, {.cv = kCvMin}).factor_range_99.high);
+  std::ranges::fill(cases, LoadCase{.state = CaseState::kUnknown});
+  cases[0] = {.ratios = {0.5}};
+  const Reliability none = find_reliability(cases, {.cv = kCvMin});
+  EXPECT_FALSE(none.factor_range_99.low);
+  EXPECT_FALSE(none.factor_range_99.high);
+}
+
 /// Against the share of samples in which all connections hold.
 TEST(Reliability, is_that_of_samples_on_random_robots) {
   const int robot_count = test::campaign(20);

@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "holdfast/losses.hpp"
 #include "holdfast/plan/sequence.hpp"
@@ -25,6 +26,8 @@ struct PlanFailuresWish {
   bool is_lose_one_wanted = false;
   LoseOneOptions lose_one = {};  ///< Its `check` is how stages are checked; the time is of each.
   std::function<void(std::size_t step)> progress = {};
+
+  bool is_wanted() const { return is_scatter_wanted || is_lose_one_wanted; }
 };
 
 /// The answer over all stages. Stages are robots by themselves: that a connection held before says
@@ -72,5 +75,22 @@ std::optional<base::Error> find_next_failures(const Structure& structure,
 std::string plan_failures_text(const PlanFailuresWish& wish, const PlanFailures& found);
 void write_plan_failures_members(io::JsonStream& json, const PlanFailuresWish& wish,
                                  const PlanFailures& found);
+
+/// The answer in the forms in which the reports of plans take it.
+struct PlanFailuresReport {
+  PlanFailures found = {};
+  std::string text = {};
+  std::string member_text = {};  ///< "key": value, of all members; empty if nothing is asked for.
+  io::MoreKeys members = {};
+
+  /// The members as a list of one or none.
+  std::vector<std::string> member_list() const {
+    return member_text.empty() ? std::vector<std::string>() : std::vector{member_text};
+  }
+};
+
+/// Looks at every stage if anything is asked for, else at none. Errors: find_plan_failures().
+base::Result<PlanFailuresReport> report_plan_failures(const io::Document& document,
+                                                      const PlanFailuresWish& wish);
 
 }  // namespace holdfast

@@ -102,7 +102,7 @@ class PlanWalk {
     if (!hangings.empty()) {
       std::vector<double> ratios;
       std::ranges::transform(hangings, std::back_inserter(ratios), [&](const plan::Hanging& one) {
-        return one.load_ratio / document_.safety_factor;
+        return one.load_ratio / document_.extension.safety_factor;
       });
       const double hold = verdict::find_reliability(ratios, {.distribution = scatter.distribution,
                                                              .cv = scatter.cv,
@@ -233,6 +233,29 @@ void write_plan_failures_members(io::JsonStream& json, const PlanFailuresWish& w
     io::write_stage_id(json, "first_undecided", found.first_undecided);
     json.end_object();
   }
+}
+
+base::Result<PlanFailuresReport> report_plan_failures(const io::Document& document,
+                                                      const PlanFailuresWish& wish) {
+  PlanFailuresReport report;
+  if (!wish.is_wanted()) {
+    return report;
+  }
+  auto found = find_plan_failures(document, wish);
+  if (!found) {
+    return found.error();
+  }
+  report.found = std::move(found).value();
+  report.text = plan_failures_text(wish, report.found);
+  report.members = [wish, found = report.found](io::JsonStream& json) {
+    write_plan_failures_members(json, wish, found);
+  };
+  io::JsonStream json(report.member_text, io::JsonStream::Layout::kLine);
+  json.begin_object();
+  report.members(json);
+  json.end_object();
+  report.member_text = report.member_text.substr(1, report.member_text.size() - 2);
+  return report;
 }
 
 }  // namespace holdfast

@@ -74,14 +74,34 @@ std::string probability_text(const Reliability& found) {
   return text;
 }
 
+/// Bounds of a factor that are apart by less are not said, as shares of it.
+constexpr double kSameFactor = 5e-3;
+
+/// What a factor that samples have told may be.
+std::string factor_range_text(double factor, const verdict::FactorRange& range) {
+  if (!range.high) {
+    return range.low
+               ? fmt::format(" ({:.3g} or more: samples are too few to say how much)", *range.low)
+               : std::string(" (samples are too few to bound it)");
+  }
+  const double low = range.low.value_or(0);
+  return *range.high - low > kSameFactor * factor
+             ? fmt::format(" ({:.3g} to {:.3g})", low, *range.high)
+             : std::string();
+}
+
 /// How strong connections would have to be.
 std::string factors_text(const Reliability& found) {
-  const auto times = [](const std::optional<double>& factor, const char* what, const char* none) {
-    return factor ? fmt::format("{:.3g} times{}", *factor, what) : std::string(none);
+  const auto times = [](const std::optional<double>& factor, const verdict::FactorRange& range,
+                        const char* what, const char* none) {
+    return factor
+               ? fmt::format("{:.3g} times{}{}", *factor, what, factor_range_text(*factor, range))
+               : std::string(none);
   };
   return fmt::format("for 99 % {}, for 99.9 % {}",
-                     times(found.strength_factor_99, " the strengths", "no strengths suffice"),
-                     times(found.strength_factor_999, "", "none"));
+                     times(found.strength_factor_99, found.factor_range_99, " the strengths",
+                           "no strengths suffice"),
+                     times(found.strength_factor_999, found.factor_range_999, "", "none"));
 }
 
 }  // namespace
@@ -156,8 +176,13 @@ void write_reliability_member(io::JsonStream& json, const model::Robot& robot,
   json.end_array();
   json.member("samples", reliability ? reliability->sample_count : 0);
   json.member("samples_with_other_states", reliability ? reliability->changed_count : 0);
-  json.member("strength_factor_99", reliability ? reliability->strength_factor_99 : std::nullopt);
-  json.member("strength_factor_999", reliability ? reliability->strength_factor_999 : std::nullopt);
+  const Reliability& found = reliability ? *reliability : Reliability{};
+  json.member("strength_factor_99", found.strength_factor_99);
+  json.member("strength_factor_99_low", found.factor_range_99.low);
+  json.member("strength_factor_99_high", found.factor_range_99.high);
+  json.member("strength_factor_999", found.strength_factor_999);
+  json.member("strength_factor_999_low", found.factor_range_999.low);
+  json.member("strength_factor_999_high", found.factor_range_999.high);
   json.end_object();
 }
 

@@ -171,7 +171,7 @@ std::optional<verdict::Reliability> find_reliability(const Structure& structure,
   return find_reliability({.robot = structure.robot,
                            .assessment = result.assessment,
                            .spec = is_whole ? &spec.value() : nullptr,
-                           .safety_factor = structure.document.safety_factor,
+                           .safety_factor = structure.document.extension.safety_factor,
                            .likeliest_max = likeliest_max},
                           scatter, options);
 }

@@ -63,7 +63,7 @@ class Bottleneck {
   base::Result<io::OrderReport> with(double factor) {
     ++needed_.search_count;
     io::Document document = target_;
-    document.safety_factor = target_.safety_factor / factor;
+    document.extension.safety_factor = target_.extension.safety_factor / factor;
     OrderRequest request = request_;
     request.seconds_max = seconds_left();
     return seek_order(document, request);
@@ -72,7 +72,7 @@ class Bottleneck {
   /// Returns whether the search told something.
   bool take(double factor, io::OrderReport report) {
     const OrderOutcome outcome = report.result.order.outcome;
-    report.target.safety_factor = target_.safety_factor;
+    report.target.extension.safety_factor = target_.extension.safety_factor;
     if (outcome == OrderOutcome::kFound) {
       const double ratio = report.result.load_ratio_max.value_or(0);
       needed_.enough =

@@ -20,7 +20,7 @@ base::Result<Sure> find_sure(const model::RobotSpec& spec, const io::Document& d
               .reliability = find_reliability({.robot = robot.value(),
                                                .assessment = checked.assessment,
                                                .spec = &spec,
-                                               .safety_factor = document.safety_factor},
+                                               .safety_factor = document.extension.safety_factor},
                                               *scatter, wish.lose_one.check)};
 }
 

@@ -35,7 +35,7 @@ io::ConnectionEntry& entry_of(io::Document& document, const model::CellPair& pai
 
 std::optional<base::Error> weaken(io::Document& document, const Weakening& weakening) {
   io::Document whole = document;
-  whole.safety_factor = 1;
+  whole.extension.safety_factor = 1;
   const auto robot = io::make_robot(whole);
   if (!robot) {
     return robot.error();

@@ -86,6 +86,14 @@ void demand(JsonReading& reading, const Json& value, const JsonPlace& place, std
   }
 }
 
+void read_safety_factor(JsonReading& reading, const Json& value, const JsonPlace& place) {
+  const double factor = reading.number(value, place);
+  if (!(factor >= 1 && factor <= kSafetyFactorMax)) {
+    reading.refuse(value, place, fmt::format("a number from 1 to {}", kSafetyFactorMax));
+  }
+  reading.document.extension.safety_factor = factor;
+}
+
 void read_floor(JsonReading& reading, const Json& value, const JsonPlace& place) {
   for (const auto& [key, member] :
        reading.members(value, place, "an object such as {\"friction\": 0.5}")) {
@@ -300,8 +308,8 @@ std::string own_place(const OwnParameters& own) {
 
 /// The readers of kExtensionKeys, in their order.
 constexpr void (*kReaders[])(JsonReading&, const Json&, const JsonPlace&) = {
-    pass_over, pass_over,        read_floor,     read_gravity, read_kinds, read_joined,
-    read_open, read_connections, read_obstacles, read_loads,   read_steps};
+    pass_over,   pass_over, read_safety_factor, read_floor,     read_gravity, read_kinds,
+    read_joined, read_open, read_connections,   read_obstacles, read_loads,   read_steps};
 static_assert(std::size(kReaders) == kExtensionKeys.size());
 
 }  // namespace

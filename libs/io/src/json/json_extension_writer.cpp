@@ -127,7 +127,10 @@ void add_scatter_members(Items& members, const Scatter& scatter) {
   }
 }
 
-void add_floor_and_gravity(Items& members, const Extension& extension) {
+void add_factor_floor_and_gravity(Items& members, const Extension& extension) {
+  if (extension.safety_factor != 1) {
+    members.push_back(member(kSafetyFactorKey, json_text(extension.safety_factor)));
+  }
   if (extension.floor_friction) {
     members.push_back(
         member("floor", object({member("friction", json_text(*extension.floor_friction))})));
@@ -147,7 +150,7 @@ void add_setting_members(Items& members, const Extension& extension,
   if (extension.lattice != default_lattice) {
     members.push_back(member("lattice", name_text(lattice_name(extension.lattice))));
   }
-  add_floor_and_gravity(members, extension);
+  add_factor_floor_and_gravity(members, extension);
 }
 
 void add_kind_members(Items& members, const Extension& extension) {
@@ -212,7 +215,7 @@ std::string extension_text(const Extension& extension) {
   if (!extension.has_floor) {
     members.push_back(member("support_z", "null"));
   }
-  add_floor_and_gravity(members, extension);
+  add_factor_floor_and_gravity(members, extension);
   if (const Items material = material_extension_members(extension); !material.empty()) {
     members.push_back(member("material", object(material)));
   }

@@ -303,7 +303,7 @@ base::Error with_other_lattice(base::Error error, const Document& document) {
 }
 
 Document with_allowed_strengths(Document document) {
-  const double factor = std::exchange(document.safety_factor, 1);
+  const double factor = std::exchange(document.extension.safety_factor, 1);
   if (factor == 1) {
     return document;
   }
@@ -335,7 +335,7 @@ Document with_allowed_strengths(Document document) {
 }
 
 base::Result<model::RobotSpec> make_spec(const Document& document) {
-  if (document.safety_factor != 1) {
+  if (document.extension.safety_factor != 1) {
     return make_spec(with_allowed_strengths(document));
   }
   if (auto error = find_fault(document)) {
@@ -399,7 +399,7 @@ std::string step_list(const Document& document) {
 }
 
 base::Result<Sequence> make_sequence(const Document& document) {
-  if (document.safety_factor != 1) {
+  if (document.extension.safety_factor != 1) {
     return make_sequence(with_allowed_strengths(document));
   }
   if (auto error = find_fault(document)) {

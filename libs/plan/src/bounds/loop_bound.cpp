@@ -50,8 +50,10 @@ std::unique_ptr<LoopBound> LoopBound::make(const model::RobotSpec& spec, const R
   }
   std::unique_ptr<LoopBound> bound(new LoopBound(robot, solved));
   bound->look_at_facets(is_bonded);
-  bound->has_polygon_ = !is_bonded && solved.stability_rule == verdict::StabilityRule::kPolygon;
-  if (bound->room_ <= 0 || (bound->has_polygon_ && (!solved.lean || !bound->find_sway(spec)))) {
+  bound->limits_.has_polygon =
+      !is_bonded && solved.stability_rule == verdict::StabilityRule::kPolygon;
+  if (bound->limits_.room <= 0 ||
+      (bound->limits_.has_polygon && (!solved.lean || !bound->find_sway(spec)))) {
     return nullptr;
   }
   return bound;
@@ -62,8 +64,8 @@ LoopBound::LoopBound(const Robot& robot, const verdict::Assessment& solved)
       solved_(solved),
       beam_(model::beam_section(robot.material()), robot.lattice()),
       stiffness_(middle_stiffness(beam_)),
-      ratio_per_norm_(model::load_ratio_per_energy_norm(robot)),
-      error_(verdict::kEnergyFactor * solved.equilibrium.energy_error) {
+      limits_{.ratio_per_norm = model::load_ratio_per_energy_norm(robot),
+              .error = verdict::kEnergyFactor * solved.equilibrium.energy_error} {
   for (const Direction direction : base::directions(robot.lattice())) {
     const auto forces =
         base::matrix_of<double>([&](const Vec& u) { return beam_.middle_force(direction, u, {}); });
@@ -75,7 +77,7 @@ LoopBound::LoopBound(const Robot& robot, const verdict::Assessment& solved)
     }
   }
   for (std::size_t i = 0; i < robot.modules().size(); ++i) {
-    mass_kg_ += robot.mass(i);
+    limits_.mass_kg += robot.mass(i);
   }
 }
 
@@ -100,13 +102,13 @@ bool LoopBound::find_sway(model::RobotSpec spec) {
     if (!answer) {
       return false;
     }
-    sway_[axis] = norm_of(work_of(pulls, answer->displacement), answer->error);
+    limits_.sway[axis] = norm_of(work_of(pulls, answer->displacement), answer->error);
   }
   return true;
 }
 
 void LoopBound::look_at_facets(bool is_bonded) {
-  room_ = std::numeric_limits<double>::infinity();
+  limits_.room = std::numeric_limits<double>::infinity();
   const double b = robot_.foot_half_width_mm();
   const double pitch = robot_.material().pitch_mm;
   for (std::size_t i = 0; i < robot_.facets().size() && !is_bonded; ++i) {
@@ -121,8 +123,8 @@ void LoopBound::look_at_facets(bool is_bonded) {
     const double pressure = std::abs(force[2]);
     for (const std::size_t axis : {3U, 4U}) {
       const double per_norm = std::sqrt(stiffness_[axis] + stiffness_[2] * b * b);
-      const double room = (pressure * b - std::abs(force[axis])) / per_norm - error_;
-      room_ = facet.touch.friction ? 0 : std::min(room_, room);
+      const double room = (pressure * b - std::abs(force[axis])) / per_norm - limits_.error;
+      limits_.room = facet.touch.friction ? 0 : std::min(limits_.room, room);
     }
   }
 }
@@ -224,15 +226,16 @@ std::optional<double> LoopBound::without(const model::Connection& lost) const {
     }
     change = std::max(change, change_of_ratio(from, loop, all));
   }
-  const double doubt = error_ * std::sqrt(units);
+  const double doubt = limits_.error * std::sqrt(units);
   const double norm = std::sqrt(square) + doubt;
   const double high = solved_.load_ratio_max ? std::max(0.0, solved_.load_ratio_range.high) : 0.0;
-  const double ratio = high + change / 2 + ratio_per_norm_ * (norm + doubt) / 2;
-  if (loops.empty() || !(ratio < kLoopRatioMax) || !(norm / 2 < room_)) {
+  const double ratio = high + change / 2 + limits_.ratio_per_norm * (norm + doubt) / 2;
+  if (loops.empty() || !(ratio < kLoopRatioMax) || !(norm / 2 < limits_.room)) {
     return std::nullopt;
   }
-  const double shift = std::hypot(sway_[0], sway_[1]) * norm * std::sqrt(1 + units) / mass_kg_;
-  const bool stays = !has_polygon_ || shift < solved_.lean->margin_mm;
+  const double shift =
+      std::hypot(limits_.sway[0], limits_.sway[1]) * norm * std::sqrt(1 + units) / limits_.mass_kg;
+  const bool stays = !limits_.has_polygon || shift < solved_.lean->margin_mm;
   return stays ? std::optional(ratio) : std::nullopt;
 }
 

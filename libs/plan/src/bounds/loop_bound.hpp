@@ -14,6 +14,16 @@
 
 namespace holdfast::plan {
 
+/// What the energy norm of a change tells of a robot that is safe by its check.
+struct EnergyLimits {
+  double ratio_per_norm = 0;
+  double error = 0;  ///< The solver's, in the energy norm.
+  double room = 0;   ///< The energy norm that leaves every facet stuck.
+  bool has_polygon = false;
+  std::array<double, 2> sway{};  ///< |K^-1 l| along x and y, kg mm / (N mm)^(1/2).
+  double mass_kg = 0;
+};
+
 /// Certifies that a robot stays safe if one of its connections is lost, without a solution: what
 /// the connection carries goes from one of its ends to the other through loops of beams beside it.
 ///
@@ -36,6 +46,8 @@ class LoopBound {
   /// of the kind that a bound decides. `spec` is the robot's. Keeps references to the others.
   static std::unique_ptr<LoopBound> make(const model::RobotSpec& spec, const model::Robot& robot,
                                          const verdict::Assessment& solved, bool is_bonded);
+
+  const EnergyLimits& limits() const { return limits_; }
 
   /// What no load ratio exceeds after a connection is lost; none if the robot may be unsafe then.
   std::optional<double> without(const model::Connection& lost) const;
@@ -65,12 +77,7 @@ class LoopBound {
   Vec stiffness_{};
   std::vector<std::array<Vec, 6>>
       pulls_;  ///< By direction: a unit of each force, at the first end.
-  double ratio_per_norm_ = 0;
-  double error_ = 0;  ///< The solver's, in the energy norm.
-  double room_ = 0;   ///< The energy norm that leaves every facet stuck.
-  bool has_polygon_ = false;
-  std::array<double, 2> sway_{};  ///< |K^-1 l| along x and y, kg mm / (N mm)^(1/2).
-  double mass_kg_ = 0;
+  EnergyLimits limits_;
 };
 
 /// Whether a bound of energies may decide about a robot that was checked: it is safe, and all its

@@ -14,7 +14,7 @@
 #include "holdfast/solver/influence.hpp"
 #include "holdfast/verdict/assessment.hpp"
 #include "holdfast/verdict/rigid_body.hpp"
-#include "judges/lost_part.hpp"
+#include "patches/lost_part.hpp"
 
 namespace holdfast::plan {
 

@@ -5,20 +5,25 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <functional>
+#include <iterator>
 #include <limits>
+#include <map>
 #include <memory>
 #include <span>
 #include <utility>
 
 #include "bounds/loop_bound.hpp"
 #include "holdfast/base/check.hpp"
+#include "holdfast/host/interruption.hpp"
 #include "holdfast/host/team.hpp"
 #include "holdfast/model/connected_parts.hpp"
 #include "judges/core_assessment.hpp"
 #include "judges/loss_judge.hpp"
-#include "judges/lost_part.hpp"
 #include "part_of.hpp"
+#include "patches/lost_part.hpp"
+#include "patches/patch_bound.hpp"
 #include "patience.hpp"
 
 namespace holdfast::plan {
@@ -36,6 +41,12 @@ using Piece = std::vector<std::int32_t>;
 
 /// The number of losses that are judged between two looks at the clock.
 constexpr std::size_t kLossStride = 256;
+
+/// Thrown through work for which nobody waits any more.
+struct LossTimeIsUp {};
+
+/// Somebody who waits is told how far it is so often, also by work that does not end meanwhile.
+constexpr std::chrono::milliseconds kTellPeriod{100};
 
 /// The worst loss is sought among so many that are known by a bound alone.
 constexpr std::size_t kRefinedMax = 256;
@@ -100,30 +111,64 @@ class LossSearch {
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       look_at(i);
     }
-    if (!options_.is_by_checks && robot_.modules().size() >= options_.loop_count_min) {
-      bound_by_loops(solved);
-    }
-    if (!options_.is_by_checks && left_count() > 0 && !patience_.is_over()) {
-      tell();
-      judge_ = LossJudge::make(spec_, robot_, solved, parts_, options_.equilibrium);
-    }
-    if (judge_) {
-      bound_each([&](const LostPart& part) { return judge_->bound(part); });
-    }
+    while_time_lasts([&] { judge_without_checks(solved); });
     report.bound_count = count_bounds();
-    if (judge_) {
-      judge_all(left(), false);
-    }
-    check_rest(report);
-    refine();
+    while_time_lasts([&] { check_rest(report); });
+    give_up_rest();
+    while_time_lasts([&] { refine(); });
     conclude(report);
     if (options_.is_cascade_wanted) {
-      find_aftermaths(report.fatal);
+      while_time_lasts([&] { find_aftermaths(report.fatal); });
     }
     return report;
   }
 
  private:
+  /// Does work until it is done, or time is up: what it has found by then is whole.
+  template <class Work>
+  void while_time_lasts(const Work& work) {
+    if (!std::isfinite(options_.seconds_max)) {
+      work();
+    } else if (!patience_.is_over()) {
+      const host::Interruptible interruptible([this] { expect_time(); });
+      try {
+        work();
+      } catch (const LossTimeIsUp&) {
+        return;  // What is left is undecided.
+      }
+    }
+  }
+
+  /// Called all the time by work on the thread that waits.
+  void expect_time() {
+    if (patience_.is_over()) {
+      throw LossTimeIsUp{};
+    }
+    const auto now = std::chrono::steady_clock::now();
+    if (options_.progress && now - last_told_ >= kTellPeriod) {
+      last_told_ = now;
+      options_.progress(told_count_, answers_.size());
+    }
+  }
+
+  void judge_without_checks(const verdict::Assessment& solved) {
+    if (options_.is_by_checks) {
+      return;
+    }
+    if (robot_.modules().size() >= options_.loop_count_min) {
+      bound_locally(solved);
+    }
+    if (left_count() == 0) {
+      return;
+    }
+    tell();
+    judge_ = LossJudge::make(spec_, robot_, solved, parts_, options_.equilibrium);
+    if (judge_) {
+      bound_each([&](const LostPart& part) { return judge_->bound(part); });
+      judge_all(left(), false);
+    }
+  }
+
   LossAnswer answer_of(std::size_t index) const { return {.loss = parts_[index].loss}; }
 
   /// What needs no mechanics: modules that nothing holds fall.
@@ -152,15 +197,51 @@ class LossSearch {
         answers_, [](const auto& answer) { return answer && answer->is_bound; }));
   }
 
-  void bound_by_loops(const verdict::Assessment& solved) {
+  void bound_locally(const verdict::Assessment& solved) {
     const auto loops = LoopBound::make(spec_, robot_, solved, options_.equilibrium.is_bonded);
-    if (loops) {
-      bound_each([&](const LostPart& part) {
-        return part.loss.kind == LossKind::kConnection && !part.is_apart
-                   ? loops->without(part.change.lost_beams.front())
-                   : std::nullopt;
-      });
+    if (!loops) {
+      return;
     }
+    bound_each([&](const LostPart& part) {
+      return part.loss.kind == LossKind::kConnection && !part.is_apart
+                 ? loops->without(part.change.lost_beams.front())
+                 : std::nullopt;
+    });
+    tell();
+    const PatchBound patches(robot_, solved, *loops, options_.equilibrium.is_bonded);
+    for (const int hops : PatchBound::kHops) {
+      bound_by_patches(patches, hops);
+    }
+  }
+
+  /// Takes the patterns that most losses have, so many as are cheap.
+  void bound_by_patches(const PatchBound& patches, int hops) {
+    std::vector<std::optional<std::size_t>> patterns(parts_.size());
+    host::Team team(options_.equilibrium.thread_count, parts_.size());
+    team.share(0, parts_.size(), [&](std::size_t begin, std::size_t end) {
+      for (; begin < end; ++begin) {
+        patterns[begin] = answers_[begin] ? std::nullopt : patches.pattern(parts_[begin], hops);
+      }
+    });
+    std::map<std::size_t, std::size_t> counts;
+    for (const auto& pattern : patterns) {
+      if (pattern) {
+        ++counts[*pattern];
+      }
+    }
+    std::vector<std::size_t> sizes;
+    std::ranges::transform(counts, std::back_inserter(sizes),
+                           [](const auto& one) { return one.second; });
+    std::ranges::sort(sizes, std::ranges::greater());
+    const std::size_t count_max = patches.pattern_count_max(hops);
+    const std::size_t least = std::max(PatchBound::sharing_min(hops),
+                                       sizes.size() > count_max ? sizes[count_max] + 1 : 0);
+    bound_each([&](const LostPart& part) {
+      const auto& pattern = patterns[static_cast<std::size_t>(&part - parts_.data())];
+      return pattern && counts.find(*pattern)->second >= least ? patches.without(part, hops)
+                                                               : std::nullopt;
+    });
+    tell();
   }
 
   /// Answers those that are safe by what bound_of(part) says.
@@ -182,7 +263,8 @@ class LossSearch {
 
   void tell() {
     if (options_.progress) {
-      options_.progress(answers_.size() - left_count(), answers_.size());
+      told_count_ = answers_.size() - left_count();
+      options_.progress(told_count_, answers_.size());
     }
   }
 
@@ -194,8 +276,7 @@ class LossSearch {
       asked.push_back(&parts_[i]);
     }
     std::vector<std::optional<Judgement>> judged(asked.size());
-    for (std::size_t first = 0; first < asked.size() && !patience_.is_over();
-         first += kLossStride) {
+    for (std::size_t first = 0; first < asked.size(); first += kLossStride) {
       const std::size_t count = std::min(kLossStride, asked.size() - first);
       judge_->judge(std::span(asked).subspan(first, count),
                     std::span(judged).subspan(first, count));
@@ -214,13 +295,17 @@ class LossSearch {
 
   void check_rest(LossReport& report) {
     for (const std::size_t i : left()) {
-      if (patience_.is_over()) {
-        answers_[i] = answer_of(i);
-        continue;
-      }
+      host::ask_whether_to_go_on();
       answers_[i] = check(parts_[i]);
       ++report.check_count;
       tell();
+    }
+  }
+
+  /// What nobody has judged is undecided.
+  void give_up_rest() {
+    for (const std::size_t i : left()) {
+      answers_[i] = answer_of(i);
     }
   }
 
@@ -351,9 +436,7 @@ class LossSearch {
     const CascadeOptions how{.equilibrium = options_.equilibrium,
                              .is_deformed = options_.is_deformed};
     for (LossAnswer& answer : fatal) {
-      if (patience_.is_over()) {
-        return;
-      }
+      host::ask_whether_to_go_on();
       const auto cascade = find_cascade_after(spec_, answer.loss, how);
       if (cascade) {
         const Cascade& found = cascade.value();
@@ -373,6 +456,8 @@ class LossSearch {
   std::vector<LostPart> parts_;
   std::vector<std::optional<LossAnswer>> answers_;
   std::unique_ptr<LossJudge> judge_;
+  std::size_t told_count_ = 0;  ///< So many were judged when somebody was told.
+  std::chrono::steady_clock::time_point last_told_ = {};
   bool is_core_sought_ = false;
   std::unique_ptr<CoreResponse> core_;
 };

@@ -71,8 +71,6 @@ struct Document {
   std::optional<KnownAnswer> known_answer;
   Extension extension;  ///< What only version 2 of the JSON format can say.
   Origin origin;
-  /// What every strength is divided by in robots that are made of the document; no file says it.
-  double safety_factor = 1;
   /// Whether make_robot() takes modules that are in several pieces, each of which something holds;
   /// no file says it.
   bool may_be_in_pieces = false;
@@ -141,8 +139,8 @@ struct ReadOptions {
   std::string ending = {};
   /// The edge of a cell in the unit of a mesh that is filled with modules; a mesh needs it.
   std::optional<double> mesh_pitch = {};
-  /// Document::safety_factor, with a warning if it is not 1; heeded by read_document().
-  double safety_factor = 1;
+  /// The safety factor that replaces the file's; heeded by read_document(), which warns of any.
+  std::optional<double> safety_factor = {};
   bool may_be_in_pieces = false;  ///< Document::may_be_in_pieces; heeded by read_document().
 };
 

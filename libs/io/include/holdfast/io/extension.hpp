@@ -87,10 +87,16 @@ struct OwnParameters {
   friend bool operator==(const OwnParameters&, const OwnParameters&) = default;
 };
 
+/// No file or option divides strengths by more.
+inline constexpr double kSafetyFactorMax = 1000;
+
 /// The members of a document that only version 2 has; as it is by default, version 1 says it all.
 struct Extension {
   std::string
       robot;  ///< One of model::robot_catalogue(), whose figures are the defaults, or empty.
+  /// What every strength is divided by in robots that are made of the document, from 1 to
+  /// kSafetyFactorMax.
+  double safety_factor = 1;
   base::Lattice lattice = base::kCubic;               ///< One of kNamedLattices.
   bool has_floor = true;                              ///< Else Document::support_z means nothing.
   std::optional<double> floor_friction;               ///< None: no slip.

@@ -22,6 +22,12 @@ struct FailingConnection {
   double share = 0;  ///< The probability that it fails, given that the robot does not hold.
 };
 
+/// What a factor of strengths lies between, with 95 %.
+struct FactorRange {
+  std::optional<double> low = {};   ///< None: no factor is known to be too small.
+  std::optional<double> high = {};  ///< None: samples are too few to say that any suffices.
+};
+
 /// The probability that every connection holds, and what decides it.
 struct Reliability {
   StrengthScatter scatter;
@@ -36,6 +42,8 @@ struct Reliability {
   /// and 0.999; none if no connection is pulled, or no factor does.
   std::optional<double> strength_factor_99 = {};
   std::optional<double> strength_factor_999 = {};
+  FactorRange factor_range_99 = {};  ///< What each of them lies between, by samples of masses.
+  FactorRange factor_range_999 = {};
   std::size_t sample_count = 0;   ///< Of masses; 0 where they do not scatter.
   std::size_t changed_count = 0;  ///< Those of them in which facets are in other states.
 };
@@ -54,8 +62,10 @@ std::optional<Reliability> find_reliability(const Assessment& assessment,
                                             std::size_t likeliest_max = kLikeliestMax);
 
 /// Says it for cases that are all as likely as each other, one or pairs of opposite samples.
+/// `is_linear`: loads are linear in numbers that are normal, as masses are while facets keep their
+/// states, so that one that is far from its limit does not come there.
 Reliability find_reliability(std::span<const LoadCase> cases, const StrengthScatter& scatter,
-                             std::size_t likeliest_max = kLikeliestMax);
+                             std::size_t likeliest_max = kLikeliestMax, bool is_linear = false);
 
 /// Whether a robot holds with a probability that is asked for: safe if so, overload if certainly
 /// not, undecided where bounds leave it open or nothing is known. Safe if 0 is asked.

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "judges/lost_part.hpp"
+#include "patches/lost_part.hpp"
 
 #include <iterator>
 #include <utility>
