@@ -27,6 +27,12 @@ std::string counted(double count, std::string_view one, std::string_view many = 
 
 /// Writes the cell of a module that carries or is carried; "a cell" but in the stage of a step,
 /// which alone knows it.
+std::string words_of(Cells cells) {
+  std::vector<std::string> words;
+  std::ranges::transform(cells, std::back_inserter(words), &model::text);
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
 std::string carrier_text(Cells cells, std::size_t index) {
   return index < cells.size() ? model::text(cells[index]) : "a cell";
 }
@@ -318,6 +324,15 @@ std::string reason_text(const verdict::Reason& reason, std::span<const base::Cel
           "the worst connection, by which {} carries the module from {}, carries {} of its "
           "strength",
           carrier_text(cells, 0), carrier_text(cells, 1), beside_one(n[0], 4));
+    case ReasonCode::kPartHasCome:
+      return fmt::format("that is when of {} in any order {} alone {} there: {}",
+                         counted(n[1], "module"), n[0] == 1 ? "one" : fmt::format("{}", n[0]),
+                         n[0] == 1 ? "is" : "are", words_of(cells));
+    case ReasonCode::kPartsNotKnown:
+      return fmt::format(
+          "{} in any order have too many parts to check each, and no bound covers all of them; "
+          "steps of fewer may",
+          counted(n[0], "module"));
     case ReasonCode::kInPieces:
       return fmt::format("the robot is in {}, each judged by itself", counted(n[0], "piece"));
     case ReasonCode::kVerdictOfTheRobot:

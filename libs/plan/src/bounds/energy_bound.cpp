@@ -21,9 +21,6 @@ namespace {
 using base::Vec6;
 using mechanics::ContactState;
 
-/// A bound this near to 1 is not trusted: multigrid's load ratios are within 1e-4.
-constexpr double kRatioMax = 1 - 1e-3;
-
 /// New modules above a section are brought into balance so many times there and back.
 constexpr int kSweepCount = 2;
 
@@ -174,13 +171,32 @@ void EnergyBound::look_at_facet(std::size_t index) {
   for (std::size_t i = 0; is_new && i < 6; ++i) {
     change[i] -= moved[i];
   }
+  room_[index] = room_with(index, change);
+}
+
+double EnergyBound::room_with(std::size_t index, const Vec& change) const {
+  const model::Facet& facet = target_.facets()[index];
   if (facet.is_bonded()) {
-    room_[index] = std::numeric_limits<double>::infinity();
-    return;
+    return std::numeric_limits<double>::infinity();
   }
+  const Vec moved = trial_force(facet, u_[base::at(facet.module)]);
   const double limit = -(moved[2] + change[2] / 2) * target_.foot_half_width_mm();
-  room_[index] = std::min((limit - std::abs(moved[3] + change[3] / 2)) / facet_per_norm_x_,
-                          (limit - std::abs(moved[4] + change[4] / 2)) / facet_per_norm_y_);
+  return std::min((limit - std::abs(moved[3] + change[3] / 2)) / facet_per_norm_x_,
+                  (limit - std::abs(moved[4] + change[4] / 2)) / facet_per_norm_y_);
+}
+
+bool EnergyBound::are_pressed_with(std::span<const std::size_t> hosts, double radius,
+                                   const std::function<double(std::size_t)>& room) {
+  const auto mark = [&](bool is_host) {
+    std::ranges::for_each(hosts, [&](std::size_t host) { nodes_[host].is_host = is_host; });
+  };
+  const double reach = radius + solved_error_ / 2;
+  mark(true);
+  const bool are_all = std::ranges::all_of(facets_, [&](std::size_t facet) {
+    return reach < room(facet) || is_pressed_nearby(facet, reach);
+  });
+  mark(false);
+  return are_all;
 }
 
 /// What a module's load costs if it goes straight down, through a single file of modules.

@@ -6,9 +6,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <vector>
 
 #include "bounds/adjoint.hpp"
@@ -116,6 +118,41 @@ class EnergyBound {
 
   /// The displacement of a module that has a facet, or is new or beside such a one.
   const base::Vec6<double>& displacement(std::size_t module) const { return u_[module]; }
+
+  /// What the module that was added last has changed, in Use::kTrying.
+  const ChangedForces& changes() const { return changes_; }
+
+  double sway_square() const { return sway_square_; }
+
+  /// The module whose support bears a module that is there.
+  std::size_t root_of(std::size_t module) const { return nodes_[module].root; }
+
+  /// What pulls sideways on all ways to a support add up to; its module's index.
+  double sway_of(std::size_t root) const { return sway_[root]; }
+
+  /// What |s - h w| / 2 may be before a facet of the robot that is there tilts,
+  double room(std::size_t facet) const { return room_[facet]; }
+
+  /// and what it would be if s had changed by `change` there, and nothing else had.
+  double room_with(std::size_t facet, const base::Vec6<double>& change) const;
+
+  /// Whether all facets of the robot that was begun with stay stuck if |s - h w| / 2 is no more
+  /// than `radius`, by their rooms, and where these do not suffice as far as the modules near them
+  /// show. Modules come beside `hosts`. In Use::kTrying, with nothing added.
+  bool are_pressed_with(std::span<const std::size_t> hosts, double radius,
+                        const std::function<double(std::size_t facet)>& room);
+
+  /// What the robot that was begun with has: the largest load ratio, errors included; what its
+  /// displacements are off by in the energy norm, at most; its moved mass.
+  double solved_ratio() const { return solved_ratio_; }
+  double solved_error() const { return solved_error_; }
+  const verdict::MovedMass& still_moved() const { return still_moved_; }
+
+  /// The most that forces of energy 1 do to a load ratio.
+  double ratio_per_norm() const { return ratio_per_norm_; }
+
+  /// A bound of a load ratio this near to 1 is not trusted: multigrid's are within 1e-4.
+  static constexpr double kRatioMax = 1 - 1e-3;
 
  private:
   using Vec = base::Vec6<double>;

@@ -29,11 +29,11 @@ model::RobotSpec with_all(const model::RobotSpec& spec, std::span<const base::Ce
 
 /// The adjoint of a facet that has left so many places without a bound, alone or with others, is
 /// found, which takes three solutions from nothing; but of so many facets at most.
-constexpr int kDoubtMin = 32;
-constexpr std::size_t kAdjointCountMax = 16;
+constexpr int kPlaceDoubtMin = 32;
+constexpr std::size_t kPlaceAdjointMax = 16;
 
 /// The most improvements of a place by solutions that follow.
-constexpr int kImprovementMax = 2;
+constexpr int kPlaceImprovementMax = 2;
 
 /// Tries places of one robot.
 class PlaceTrial {
@@ -49,12 +49,12 @@ class PlaceTrial {
     const auto doubtful = judge_open(solved, found);
     std::vector<std::pair<int, std::size_t>> ranked;
     for (const auto& [facet, count] : doubtful) {
-      if (count >= kDoubtMin) {
+      if (count >= kPlaceDoubtMin) {
         ranked.emplace_back(-count, facet);
       }
     }
     std::ranges::sort(ranked);
-    ranked.resize(std::min(ranked.size(), kAdjointCountMax));
+    ranked.resize(std::min(ranked.size(), kPlaceAdjointMax));
     if (!ranked.empty()) {
       find_adjoints_of(ranked);
       judge_open(solved, found);
@@ -110,10 +110,10 @@ class PlaceTrial {
     bound.add(static_cast<Element>(module));
     followed.add(static_cast<Element>(module));
     auto known = followed.solve();
-    for (int k = 0; known && !found.high && k <= kImprovementMax; ++k) {
+    for (int k = 0; known && !found.high && k <= kPlaceImprovementMax; ++k) {
       found.high = bound.improve(followed.displacement(), *known);
       found.shift_mm = bound.shift_mm();
-      known = k < kImprovementMax && !found.high ? followed.improve() : std::nullopt;
+      known = k < kPlaceImprovementMax && !found.high ? followed.improve() : std::nullopt;
     }
     std::ranges::for_each(adjoints_, [](const auto& adjoint) { adjoint->shrink(); });
     return found;
