@@ -149,7 +149,6 @@ verdict::MovedMass EnergyBound::moved_mass() const {
   return moved;
 }
 
-/// The force on a stuck facet whose module moves by u, in the facet's middle.
 EnergyBound::Vec EnergyBound::trial_force(const model::Facet& facet, const Vec& u) const {
   const auto law = mechanics::ground_facet<double>(beam_.stiffness(), target_.material().pitch_mm,
                                                    2 * target_.foot_half_width_mm(), 0,
@@ -171,15 +170,15 @@ void EnergyBound::look_at_facet(std::size_t index) {
   for (std::size_t i = 0; is_new && i < 6; ++i) {
     change[i] -= moved[i];
   }
-  room_[index] = room_with(index, change);
+  room_[index] = room_with(index, u_[module], change);
 }
 
-double EnergyBound::room_with(std::size_t index, const Vec& change) const {
+double EnergyBound::room_with(std::size_t index, const Vec& u, const Vec& change) const {
   const model::Facet& facet = target_.facets()[index];
   if (facet.is_bonded()) {
     return std::numeric_limits<double>::infinity();
   }
-  const Vec moved = trial_force(facet, u_[base::at(facet.module)]);
+  const Vec moved = trial_force(facet, u);
   const double limit = -(moved[2] + change[2] / 2) * target_.foot_half_width_mm();
   return std::min((limit - std::abs(moved[3] + change[3] / 2)) / facet_per_norm_x_,
                   (limit - std::abs(moved[4] + change[4] / 2)) / facet_per_norm_y_);
@@ -217,7 +216,6 @@ bool EnergyBound::is_far_aside(std::size_t module) const {
   return way_energy(module) > kSpreadShare * norm_max * norm_max;
 }
 
-/// What a module's beams put on its neighbours, but for fixed ones.
 std::vector<LoadSpread::Load> EnergyBound::loads_beside(std::size_t module) const {
   std::vector<LoadSpread::Load> loads;
   local_.for_each_neighbour(module, [&](base::Direction direction, std::size_t other) {
@@ -509,11 +507,8 @@ double EnergyBound::strain_by_adjoint(std::size_t index) {
   return largest;
 }
 
-std::optional<double> EnergyBound::add(Element element) {
-  const std::size_t module = base::at(element);
-  if (!has_core_ || target_.modules()[module].support == model::Support::kFixed) {
-    return std::nullopt;
-  }
+/// A module is there, in balance with its neighbours where there is no section.
+void EnergyBound::place(std::size_t module) {
   choose_way(module);
   Node& node = nodes_[module];
   node.is_there = true;
@@ -524,19 +519,41 @@ std::optional<double> EnergyBound::add(Element element) {
   before_.looked_at.clear();
   add_sway(module);
   if (section_ != nullptr) {
-    return add_above_section(module);
+    return;
   }
   take_place(module);
   moved_.add(target_.mass(module), u_[module][0], u_[module][1]);
-  open_gaps(module);
+  new_.push_back(module);
   for (std::size_t facet = first_facet_[module]; facet < first_facet_[module + 1]; ++facet) {
     facets_.push_back(facet);
-    if (facet > first_facet_[module]) {
-      look_at_facet(facet);
-    }
   }
-  new_.push_back(module);
   watched_.attach(module);
+}
+
+base::Vec6<double> EnergyBound::follow(std::size_t module,
+                                       const std::function<Vec(std::size_t)>& displacement) {
+  std::vector<LocalBalance::Beam> beams;
+  local_.add_beams(module, beams);
+  Vec rest{};
+  for (const LocalBalance::Beam& beam : beams) {
+    base::add_times(rest, -1, block_product(*beam.block_12, displacement(beam.other)));
+  }
+  return block_product(local_.stiffness(module).inverse, rest);
+}
+
+std::optional<double> EnergyBound::add(Element element) {
+  const std::size_t module = base::at(element);
+  if (!has_core_ || target_.modules()[module].support == model::Support::kFixed) {
+    return std::nullopt;
+  }
+  place(module);
+  if (section_ != nullptr) {
+    return add_above_section(module);
+  }
+  open_gaps(module);
+  for (std::size_t facet = first_facet_[module] + 1; facet < first_facet_[module + 1]; ++facet) {
+    look_at_facet(facet);
+  }
   if (!is_far_aside(module) || !spread(module)) {
     carry(module);
   }

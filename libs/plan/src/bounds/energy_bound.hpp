@@ -119,6 +119,26 @@ class EnergyBound {
   /// The displacement of a module that has a facet, or is new or beside such a one.
   const base::Vec6<double>& displacement(std::size_t module) const { return u_[module]; }
 
+  /// Attaches a module that is not fixed as add() does, but that nothing is said of its load; it is
+  /// in balance with its neighbours where they are. In Use::kTrying.
+  void place(std::size_t module);
+
+  /// What a module's beams put on its neighbours, but for fixed ones.
+  std::vector<LoadSpread::Load> loads_beside(std::size_t module) const;
+
+  /// How a module moves that stays in balance while its neighbours in the robot that was begun with
+  /// move by `displacement`, by module of the target.
+  base::Vec6<double> follow(std::size_t module,
+                            const std::function<base::Vec6<double>(std::size_t)>& displacement);
+
+  const model::LatticeBeam<double>& beam() const { return beam_; }
+
+  /// The facets that are there.
+  const std::vector<std::size_t>& facets() const { return facets_; }
+
+  /// The force on a stuck facet whose module moves by u, in the facet's middle.
+  base::Vec6<double> trial_force(const model::Facet& facet, const base::Vec6<double>& u) const;
+
   /// What the module that was added last has changed, in Use::kTrying.
   const ChangedForces& changes() const { return changes_; }
 
@@ -133,8 +153,9 @@ class EnergyBound {
   /// What |s - h w| / 2 may be before a facet of the robot that is there tilts,
   double room(std::size_t facet) const { return room_[facet]; }
 
-  /// and what it would be if s had changed by `change` there, and nothing else had.
-  double room_with(std::size_t facet, const base::Vec6<double>& change) const;
+  /// and what it would be if its module moved by u, and s differed from h w by `change`.
+  double room_with(std::size_t facet, const base::Vec6<double>& u,
+                   const base::Vec6<double>& change) const;
 
   /// Whether all facets of the robot that was begun with stay stuck if |s - h w| / 2 is no more
   /// than `radius`, by their rooms, and where these do not suffice as far as the modules near them
@@ -195,7 +216,6 @@ class EnergyBound {
   void open_gaps(std::size_t module);
   double way_energy(std::size_t from) const;
   bool is_far_aside(std::size_t module) const;
-  std::vector<LoadSpread::Load> loads_beside(std::size_t module) const;
   bool spread(std::size_t from);
   void bear(const LoadSpread::Share& share);
   void carry(std::size_t from);
@@ -204,7 +224,6 @@ class EnergyBound {
   void bear_by_section();
   verdict::MovedMass moved_mass() const;
   void look_at_facet(std::size_t facet);
-  Vec trial_force(const model::Facet& facet, const Vec& u) const;
   bool is_pressed_nearby(std::size_t facet, double radius);
   bool are_pressed(double radius);
   double strain_by_adjoint(std::size_t facet);

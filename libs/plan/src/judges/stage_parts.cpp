@@ -99,10 +99,11 @@ std::optional<Judgement> certify_parts(const RobotState& whole,
   }
   RunJudge judge(spec, target.value(), options.thread_count, options);
   const LocalAdjoints nearby(target.value());
-  BatchBound bound(target.value(), nearby);
+  BatchBound bound(spec, target.value(), nearby);
   if (!bound.begin(core, judge.assess(core))) {
     return std::nullopt;
   }
+  bound.prepare(coming);
   std::optional<Judgement> judgement;
   for (const Element element : coming) {
     judgement = bound.add(element);

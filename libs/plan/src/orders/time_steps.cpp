@@ -20,6 +20,9 @@ constexpr std::size_t kCheckedMaxOfLarge = 3;
 /// So many candidates are tried for a batch by checks.
 constexpr std::size_t kTriedByChecks = 12;
 
+/// So many candidates are looked at together.
+constexpr std::size_t kPrepared = solver::kLaneCount;
+
 /// So many candidates in a row that no bound allows end a batch: others hardly fare better.
 constexpr std::size_t kRefusedMax = 64;
 
@@ -94,7 +97,7 @@ TimeSteps::TimeSteps(const OrderTask& task, const model::Robot& target,
       reach_(task.target, task.rule),
       run_judge_(task.target, target, options.thread_count),
       nearby_(target),
-      bound_(target, nearby_),
+      bound_(task.target, target, nearby_),
       places_(target.modules().size()) {}
 
 verdict::Assessment TimeSteps::solve(const ElementSet& state) {
@@ -162,10 +165,8 @@ TimeSteps::Found TimeSteps::by_bounds(std::span<const Element> candidates) {
     return found;
   }
   std::size_t refused_count = 0;
-  for (const Element element : candidates) {
-    if (found.batch.size() == task_.parallel_max || refused_count == kRefusedMax) {
-      break;
-    }
+  std::vector<Element> beside_others;  // They come last: beams between two that come are unknown.
+  const auto try_one = [&](Element element) {
     const auto judgement =
         can_come(found.batch, element) ? bound_.add(element) : std::optional<Judgement>();
     refused_count = judgement ? 0 : refused_count + 1;
@@ -173,6 +174,22 @@ TimeSteps::Found TimeSteps::by_bounds(std::span<const Element> candidates) {
       found.batch.push_back(element);
       found.judgement = *judgement;
     }
+  };
+  const auto is_over = [&] {
+    return found.batch.size() == task_.parallel_max || refused_count == kRefusedMax;
+  };
+  for (std::size_t i = 0; i < candidates.size() && !is_over(); ++i) {
+    if (i % kPrepared == 0) {
+      bound_.prepare(candidates.subspan(i, std::min(kPrepared, candidates.size() - i)));
+    }
+    const bool is_beside = std::ranges::any_of(
+        target_.connected()[base::at(candidates[i])], [&](std::int32_t other) {
+          return std::ranges::find(found.batch, other) != found.batch.end();
+        });
+    is_beside ? beside_others.push_back(candidates[i]) : try_one(candidates[i]);
+  }
+  for (std::size_t i = 0; i < beside_others.size() && !is_over(); ++i) {
+    try_one(beside_others[i]);
   }
   return found;
 }
