@@ -348,10 +348,16 @@ bool BatchBound::are_pressed(const Batch& batch, double radius) {
   if (!(reach < batch.own_room)) {
     return false;
   }
-  if (!answers_) {
-    return bound_.are_pressed_with(batch.hosts, radius, room);
-  }
-  return std::ranges::all_of(bound_.facets(), [&](auto facet) { return reach < room(facet); }) &&
+  const auto moved = [&](std::size_t facet) {
+    EnergyBound::Changes changes;
+    const auto change = batch.feet.find(facet);
+    if (answers_ && change != batch.feet.end()) {
+      base::add_times(changes.low, 0.5, change->second.low);
+      base::add_times(changes.high, 0.5, change->second.high);
+    }
+    return changes;
+  };
+  return bound_.are_pressed_with(batch.hosts, radius, room, moved) &&
          std::ranges::all_of(batch.own_feet, [&](const auto& foot) {
            return reach < room_of(foot.first, foot.second.u, foot.second.change);
          });

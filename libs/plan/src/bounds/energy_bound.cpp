@@ -185,14 +185,15 @@ double EnergyBound::room_with(std::size_t index, const Vec& u, const Vec& change
 }
 
 bool EnergyBound::are_pressed_with(std::span<const std::size_t> hosts, double radius,
-                                   const std::function<double(std::size_t)>& room) {
+                                   const std::function<double(std::size_t)>& room,
+                                   const std::function<Changes(std::size_t)>& changes) {
   const auto mark = [&](bool is_host) {
     std::ranges::for_each(hosts, [&](std::size_t host) { nodes_[host].is_host = is_host; });
   };
   const double reach = radius + solved_error_ / 2;
   mark(true);
   const bool are_all = std::ranges::all_of(facets_, [&](std::size_t facet) {
-    return reach < room(facet) || is_pressed_nearby(facet, reach);
+    return reach < room(facet) || is_pressed_nearby(facet, reach, changes(facet));
   });
   mark(false);
   return are_all;
@@ -437,7 +438,7 @@ void EnergyBound::forget_changes() {
 
 /// Whether a facet that was there when the robot was solved stays stuck, as far as the
 /// modules near it show, if |s - h w| / 2 is no more than `radius`.
-bool EnergyBound::is_pressed_nearby(std::size_t index, double radius) {
+bool EnergyBound::is_pressed_nearby(std::size_t index, double radius, const Changes& changes) {
   const model::Facet& facet = target_.facets()[index];
   const Node& node = nodes_[base::at(facet.module)];
   if (node.is_new) {
@@ -456,19 +457,23 @@ bool EnergyBound::is_pressed_nearby(std::size_t index, double radius) {
   const Vec force = trial_force(facet, u_[base::at(facet.module)]);
   const double b = target_.foot_half_width_mm();
   const auto holds = [&](double torque, double mx, double my, double lack_per_norm) {
-    const double slack = -force[2] * b - std::abs(torque) - lack_per_norm * solved_error_;
+    const double slack =
+        -(force[2] + changes.high[2]) * b - torque - lack_per_norm * solved_error_;
     return std::ranges::all_of(std::array{1.0, -1.0}, [&](double sign) {
       return 2 * radius * nearby->gram->norm({b, sign * mx, sign * my}) < slack;
     });
   };
-  return holds(force[3], 1, 0, facet_per_norm_x_) && holds(force[4], 0, 1, facet_per_norm_y_);
+  const auto torque = [&](std::size_t i) {
+    return std::max(std::abs(force[i] + changes.high[i]), std::abs(force[i] + changes.low[i]));
+  };
+  return holds(torque(3), 1, 0, facet_per_norm_x_) && holds(torque(4), 0, 1, facet_per_norm_y_);
 }
 
 /// Counts all that are doubtful, as one that is known better makes room for the next only.
 bool EnergyBound::are_pressed(double radius) {
   bool are_all = true;
   for (const std::size_t facet : facets_) {
-    if (radius < room_[facet] || is_pressed_nearby(facet, radius)) {
+    if (radius < room_[facet] || is_pressed_nearby(facet, radius, {})) {
       continue;
     }
     const double strain = strain_by_adjoint(facet);

@@ -157,11 +157,19 @@ class EnergyBound {
   double room_with(std::size_t facet, const base::Vec6<double>& u,
                    const base::Vec6<double>& change) const;
 
+  /// What the force of a facet may change by, in the facet's middle.
+  struct Changes {
+    base::Vec6<double> low{};
+    base::Vec6<double> high{};
+  };
+
   /// Whether all facets of the robot that was begun with stay stuck if |s - h w| / 2 is no more
   /// than `radius`, by their rooms, and where these do not suffice as far as the modules near them
-  /// show. Modules come beside `hosts`. In Use::kTrying, with nothing added.
+  /// show if h w changes so there. Modules come beside `hosts`. In Use::kTrying, with nothing
+  /// added.
   bool are_pressed_with(std::span<const std::size_t> hosts, double radius,
-                        const std::function<double(std::size_t facet)>& room);
+                        const std::function<double(std::size_t facet)>& room,
+                        const std::function<Changes(std::size_t facet)>& changes);
 
   /// What the robot that was begun with has: the largest load ratio, errors included; what its
   /// displacements are off by in the energy norm, at most; its moved mass.
@@ -224,7 +232,7 @@ class EnergyBound {
   void bear_by_section();
   verdict::MovedMass moved_mass() const;
   void look_at_facet(std::size_t facet);
-  bool is_pressed_nearby(std::size_t facet, double radius);
+  bool is_pressed_nearby(std::size_t facet, double radius, const Changes& changes);
   bool are_pressed(double radius);
   double strain_by_adjoint(std::size_t facet);
 

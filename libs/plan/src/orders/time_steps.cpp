@@ -24,7 +24,7 @@ constexpr std::size_t kTriedByChecks = 12;
 constexpr std::size_t kPrepared = solver::kLaneCount;
 
 /// So many candidates in a row that no bound allows end a batch: others hardly fare better.
-constexpr std::size_t kRefusedMax = 64;
+constexpr std::size_t kRefusedMax = 256;
 
 /// Another order is sought by so many states for each module that is to come, and so many more.
 constexpr std::size_t kSoughtPerElement = 2;
