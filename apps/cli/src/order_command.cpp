@@ -413,7 +413,9 @@ Command add_order(CLI::App& app) {
                         {"order arch.json --from pier.json -o plan.json",
                          "go on from what stands already, and keep the order"},
                         {"order arch.json --reverse", "take it apart"},
-                        {"order arch.json --reach line", "modules come straight in"}},
+                        {"order arch.json --reach line", "modules come straight in"},
+                        {"order arch.json --parallel 4",
+                         "four modules at a time, in whatever order they arrive"}},
            .notes = "Every state on the way is checked as by holdfast check; one that is "
                     "undecided does not count as safe. The first interrupt ends the search and "
                     "keeps what it has found.",

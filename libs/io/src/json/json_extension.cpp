@@ -282,9 +282,8 @@ model::Step plan_step(JsonReading& reading, const Json& value, const JsonPlace& 
     reading.fail(place, fmt::format("expected an entry in at least one of \"{}\", found none",
                                     fmt::join(kStepLists, "\", \"")));
   }
-  const bool is_one_list =
-      step == model::Step{.attach = step.attach, .is_any_order = true} ||
-      step == model::Step{.detach = step.detach, .is_any_order = true};
+  const bool is_one_list = step == model::Step{.attach = step.attach, .is_any_order = true} ||
+                           step == model::Step{.detach = step.detach, .is_any_order = true};
   if (step.is_any_order && !is_one_list) {
     reading.fail(place.at(kAnyOrderKey),
                  "only a step that attaches, or only detaches, is done in any order: expected "

@@ -22,7 +22,7 @@ void BatchBound::Span::add(const Vec& more) {
   }
 }
 
-/// Of the part that has the most of it.
+/// The energy of the part that has the most of it.
 double BatchBound::Span::energy(const Vec& stiffness) const {
   double energy = 0;
   for (std::size_t i = 0; i < stiffness.size(); ++i) {
@@ -149,8 +149,8 @@ std::vector<PointLoad> BatchBound::loads_of(const Footprint& print) {
   }
   system.solve(loads);
   for (std::size_t i = 0; i < first.size(); ++i) {
-    PointLoad& load = settled.emplace_back(
-        PointLoad{.module = base::at(core_place_[first[i].module])});
+    PointLoad& load =
+        settled.emplace_back(PointLoad{.module = base::at(core_place_[first[i].module])});
     std::copy_n(loads.begin() + static_cast<std::ptrdiff_t>(6 * i), 6, load.load.begin());
   }
   return settled;
@@ -248,8 +248,8 @@ void BatchBound::add_answer(const Footprint& print, Batch& batch) const {
   const model::Robot& robot = answers_->robot();
   for (std::size_t i = 0; i < robot.connections().size(); ++i) {
     const model::Connection& pair = robot.connections()[i];
-    const Vec force = bound_.beam().middle_force(
-        pair.direction, print.answer[base::at(pair.a)], print.answer[base::at(pair.b)]);
+    const Vec force = bound_.beam().middle_force(pair.direction, print.answer[base::at(pair.a)],
+                                                 print.answer[base::at(pair.b)]);
     batch.ratios[i] += std::max(0.0, model::load_ratio(robot.connector(pair), force).ratio);
   }
   for (const std::size_t facet : bound_.facets()) {
@@ -270,9 +270,7 @@ void BatchBound::add_answer(const Footprint& print, Batch& batch) const {
 /// Adds how a module goes with the robot before where another one moves that.
 void BatchBound::add_following(const Footprint& print, const Footprint& moving, Batch& batch) {
   const std::size_t module = base::at(print.module);
-  const auto moved = [&](std::size_t other) {
-    return moving.answer[base::at(core_place_[other])];
-  };
+  const auto moved = [&](std::size_t other) { return moving.answer[base::at(core_place_[other])]; };
   const Vec u = bound_.follow(module, moved);
   batch.moved.add({target_.mass(module) * u[0], target_.mass(module) * u[1], 0, 0, 0, 0});
   const ChangedForces& changes = bound_.changes();

@@ -16,29 +16,30 @@
 
 namespace holdfast::plan {
 
-/// Certifies that a robot is safe whichever part of a batch of modules has been attached to it, each
-/// of them beside modules that were there before.
+/// Certifies that a robot is safe whichever part of a batch of modules has been attached to it,
+/// each of them beside modules that were there before.
 ///
 /// What a module alone does to s and h w of an EnergyBound, d of it being s - h w and e half their
 /// sum, is taken for what it does in every part; what it does besides if another is there, too, is
-/// taken for something that a part may have or not. As a part has some of all these, for each number
-/// i of a spring
+/// taken for something that a part may have or not. As a part has some of all these, for each
+/// number i of a spring
 ///   |sum d_i| <= max(sum of positive d_i, sum of -d_i of the negative),
 /// so that |s - h w| of every part is bounded by one sum of squares. A load ratio c is convex and
 /// homogeneous, c(sum e) <= sum of the positive c(e); and what a facet lacks to tilting is least
 /// where the part takes all that is bad for it. The centre of mass is looked at by each edge of the
 /// support polygon of the robot before, which feet that come make no smaller.
 ///
-/// Where the robot before can be factorized (CoreAnswers) its answer to what a module's beams put on
-/// it is known, and there s = h w. A module that comes is in balance with its neighbours, wherever
-/// the whole batch moves these (EnergyBound::follow()); d is what its beams carry besides what they
-/// did when nothing moved. Else a module's load goes down a way of beams as of EnergyBound. Beams
-/// between modules of the batch carry nothing, and their h w is that of their ends.
+/// Where the robot before can be factorized (CoreAnswers) its answer to what a module's beams put
+/// on it is known, and there s = h w. A module that comes is in balance with its neighbours,
+/// wherever the whole batch moves these (EnergyBound::follow()); d is what its beams carry besides
+/// what they did when nothing moved. Else a module's load goes down a way of beams as of
+/// EnergyBound. Beams between modules of the batch carry nothing, and their h w is that of their
+/// ends.
 class BatchBound {
  public:
-  /// Keeps references to the whole robot, to what it is made of, and to what is known of its facets.
-  BatchBound(const model::RobotSpec& spec, const model::Robot& target,
-             const LocalAdjoints& nearby);
+  /// Keeps references to the whole robot, to what it is made of, and to what is known of its
+  /// facets.
+  BatchBound(const model::RobotSpec& spec, const model::Robot& target, const LocalAdjoints& nearby);
 
   /// Begins with a robot that is solved and nothing more. False if nothing can be certified on it,
   /// as of EnergyBound; then every module is refused.
@@ -49,7 +50,8 @@ class BatchBound {
   void prepare(std::span<const Element> modules);
 
   /// Takes a module into the batch, which touches the robot that was begun with. Returns what holds
-  /// of all parts of the batch; none if one of them may be unsafe, and then the module is not taken.
+  /// of all parts of the batch; none if one of them may be unsafe, and then the module is not
+  /// taken.
   std::optional<Judgement> add(Element module);
 
  private:
@@ -95,7 +97,7 @@ class BatchBound {
   struct Batch {
     std::vector<Footprint> members;
     std::map<std::size_t, Beam> beams;
-    std::map<std::size_t, Span> feet;      ///< Changes of s.
+    std::map<std::size_t, Span> feet;  ///< Changes of s.
     std::map<std::size_t, OwnFoot> own_feet;
     std::vector<std::size_t> hosts;
     double own_energy = 0;

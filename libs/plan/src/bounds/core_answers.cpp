@@ -26,8 +26,8 @@ std::unique_ptr<CoreAnswers> CoreAnswers::make(const model::RobotSpec& spec,
   direct.fill_max = kAnswersFillMax;
   direct.thread_count = 1;
   made->influence_ = solver::Influence::make(made->robot_, direct);
-  const bool is_exact = made->influence_ && rounding_share(made->robot_, *made->influence_) <=
-                                                kRoundingShareMax;
+  const bool is_exact =
+      made->influence_ && rounding_share(made->robot_, *made->influence_) <= kRoundingShareMax;
   return is_exact ? std::move(made) : nullptr;
 }
 

@@ -457,8 +457,7 @@ bool EnergyBound::is_pressed_nearby(std::size_t index, double radius, const Chan
   const Vec force = trial_force(facet, u_[base::at(facet.module)]);
   const double b = target_.foot_half_width_mm();
   const auto holds = [&](double torque, double mx, double my, double lack_per_norm) {
-    const double slack =
-        -(force[2] + changes.high[2]) * b - torque - lack_per_norm * solved_error_;
+    const double slack = -(force[2] + changes.high[2]) * b - torque - lack_per_norm * solved_error_;
     return std::ranges::all_of(std::array{1.0, -1.0}, [&](double sign) {
       return 2 * radius * nearby->gram->norm({b, sign * mx, sign * my}) < slack;
     });

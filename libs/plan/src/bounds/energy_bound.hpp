@@ -174,7 +174,9 @@ class EnergyBound {
   /// What the robot that was begun with has: the largest load ratio, errors included; what its
   /// displacements are off by in the energy norm, at most; its moved mass.
   double solved_ratio() const { return solved_ratio_; }
+
   double solved_error() const { return solved_error_; }
+
   const verdict::MovedMass& still_moved() const { return still_moved_; }
 
   /// The most that forces of energy 1 do to a load ratio.

@@ -155,8 +155,7 @@ void ChangedForces::open_gap(std::size_t module, int direction, const Vec& u_mod
 
 ChangedForces::Spring ChangedForces::gap_between(std::size_t module, int direction,
                                                  const Vec& u_module, const Vec& u_other) const {
-  return {.index = index_of(module, direction),
-          .gap = force_between(direction, u_module, u_other)};
+  return {.index = index_of(module, direction), .gap = force_between(direction, u_module, u_other)};
 }
 
 void ChangedForces::weigh_facet(std::size_t index, const Vec& moved) {

@@ -188,9 +188,8 @@ class Run {
         const bool is_first = (i - begin) % kChunk == 0;
         judge_one(*judge, i, robot, transition,
                   // Behind a step in any order it is that of all parts of it.
-                  is_first || steps_[i - 1].is_any_order
-                      ? nullptr
-                      : &judged_[i - 1].stages[kStageCount - 1]);
+                  is_first || steps_[i - 1].is_any_order ? nullptr
+                                                         : &judged_[i - 1].stages[kStageCount - 1]);
       }
       apply(steps_[i], transition, robot);
     }

@@ -32,8 +32,8 @@ model::Step step_of_part(const model::Step& step, const std::vector<base::Cell>&
   return part;
 }
 
-/// The proper parts that are checked, by which of the modules are there: all, or where these are too
-/// many those with one module or all but one.
+/// The proper parts that are checked, by which of the modules are there: all, or where these are
+/// too many those with one module or all but one.
 std::vector<std::vector<base::Cell>> checked_parts(const std::vector<base::Cell>& batch) {
   const std::size_t count = batch.size();
   std::vector<std::vector<base::Cell>> parts;
@@ -89,10 +89,10 @@ std::optional<Judgement> certify_parts(const RobotState& whole,
     }
   }
   const auto is_beside = [&](Element element) {
-    return std::ranges::any_of(
-        target.value().connected()[base::at(element)], [&](std::int32_t other) {
-          return other != model::Robot::kNoNeighbour && core.contains(other);
-        });
+    return std::ranges::any_of(target.value().connected()[base::at(element)],
+                               [&](std::int32_t other) {
+                                 return other != model::Robot::kNoNeighbour && core.contains(other);
+                               });
   };
   if (core.size() == 0 || !std::ranges::all_of(coming, is_beside)) {
     return std::nullopt;
@@ -120,11 +120,10 @@ void add_judged_part(StageJudgement& all, const StageJudgement& part,
   const auto margin = smaller(all.margin_mm, part.margin_mm);
   if (all.reasons.empty() || is_worse(all, part)) {
     all = part;
-    all.reasons.push_back(
-        {.reason = {.code = verdict::ReasonCode::kPartHasCome,
-                    .numbers = {static_cast<double>(there.size()),
-                                static_cast<double>(batch_count)}},
-         .cells = there});
+    all.reasons.push_back({.reason = {.code = verdict::ReasonCode::kPartHasCome,
+                                      .numbers = {static_cast<double>(there.size()),
+                                                  static_cast<double>(batch_count)}},
+                           .cells = there});
   }
   all.load_ratio_max = ratio;
   all.margin_mm = margin;
@@ -154,8 +153,9 @@ base::Result<StageJudgement> judge_parts(const RobotState& before, const model::
     const auto part = judge_part(step_of_part(step, there));
     if (!part) {
       return base::Error{.code = part.error().code,
-                         .message = part.error().message + "; in any order each module has to be "
-                                                           "able to come, or go, first",
+                         .message = part.error().message +
+                                    "; in any order each module has to be "
+                                    "able to come, or go, first",
                          .where = part.error().where};
     }
     add_judged_part(all, part.value(), there, batch.size());

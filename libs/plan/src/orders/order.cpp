@@ -304,8 +304,7 @@ base::Result<RobotOrder> find_robot_order(const OrderTask& task, const RobotOrde
     TimeSteps steps(task, made.target, options, patience);
     steps.replace(result.order);
     result.load_ratio_max = steps.solved_ratio();
-    result.step_count_least =
-        step_count_least(made.target, result.order.start, task.parallel_max);
+    result.step_count_least = step_count_least(made.target, result.order.start, task.parallel_max);
   }
   if (options.is_exact && !is_parallel) {
     CertifiedStates(growth, result.order, patience).solve([&](std::size_t module_count) {

@@ -17,13 +17,14 @@ namespace {
 constexpr std::size_t kCheckedMax = 5;
 constexpr std::size_t kCheckedMaxOfLarge = 3;
 
-/// So many candidates are tried for a batch by checks.
+/// The number of candidates that are tried for a batch by checks.
 constexpr std::size_t kTriedByChecks = 12;
 
-/// So many candidates are looked at together.
+/// The number of candidates that are looked at together.
 constexpr std::size_t kPrepared = solver::kLaneCount;
 
-/// So many candidates in a row that no bound allows end a batch: others hardly fare better.
+/// A batch ends after this number of candidates in a row that no bound allows: others hardly fare
+/// better.
 constexpr std::size_t kRefusedMax = 256;
 
 /// Another order is sought by so many states for each module that is to come, and so many more.
@@ -49,7 +50,7 @@ std::vector<int> steps_from(const model::Robot& target, const ElementSet& start)
   return distance;
 }
 
-/// By module, how many others at most come one after another behind it on shortest chains.
+/// How many others at most come one after another behind each module on shortest chains.
 std::vector<int> waiting_chains(const model::Robot& target, const ElementSet& start) {
   const std::vector<int> distance = steps_from(target, start);
   std::vector<Element> farthest_first;
@@ -73,10 +74,19 @@ std::vector<int> waiting_chains(const model::Robot& target, const ElementSet& st
 
 std::vector<base::Cell> cells_to_come(const OrderTask& task, std::span<const Element> elements) {
   std::vector<base::Cell> cells;
-  std::ranges::transform(elements, std::back_inserter(cells), [&](Element element) {
-    return task.target.existing[base::at(element)];
-  });
+  std::ranges::transform(elements, std::back_inserter(cells),
+                         [&](Element element) { return task.target.existing[base::at(element)]; });
   return cells;
+}
+
+/// What two robots are that are both safe.
+Judgement both_of(const Judgement& a, const Judgement& b) {
+  Judgement both = a;
+  both.load_ratio_max = larger(a.load_ratio_max, b.load_ratio_max);
+  both.load_ratio_high = larger(a.load_ratio_high, b.load_ratio_high);
+  both.margin_mm = smaller(a.margin_mm, b.margin_mm);
+  both.is_bound = a.is_bound || b.is_bound;
+  return both;
 }
 
 }  // namespace
@@ -133,8 +143,8 @@ std::vector<Element> TimeSteps::candidates() const {
   std::vector<Element> list;
   for (std::size_t i = place_; i < std::min(order_.size(), place_ + window_); ++i) {
     const Element element = order_[i];
-    const bool is_beside = std::ranges::any_of(
-        target_.connected()[base::at(element)], [&](std::int32_t other) {
+    const bool is_beside =
+        std::ranges::any_of(target_.connected()[base::at(element)], [&](std::int32_t other) {
           return other != model::Robot::kNoNeighbour && state_.contains(other);
         });
     if (is_beside && !state_.contains(element)) {
@@ -182,8 +192,8 @@ TimeSteps::Found TimeSteps::by_bounds(std::span<const Element> candidates) {
     if (i % kPrepared == 0) {
       bound_.prepare(candidates.subspan(i, std::min(kPrepared, candidates.size() - i)));
     }
-    const bool is_beside = std::ranges::any_of(
-        target_.connected()[base::at(candidates[i])], [&](std::int32_t other) {
+    const bool is_beside =
+        std::ranges::any_of(target_.connected()[base::at(candidates[i])], [&](std::int32_t other) {
           return std::ranges::find(found.batch, other) != found.batch.end();
         });
     is_beside ? beside_others.push_back(candidates[i]) : try_one(candidates[i]);
@@ -228,7 +238,7 @@ TimeSteps::Found TimeSteps::by_checks(std::span<const Element> candidates) {
 
 /// The next module of the order, which is known to be safe where the steps are in step with it.
 TimeSteps::Found TimeSteps::next_of_order() const {
-  return {.batch = {order_[place_]}, .judgement = known_[place_]};
+  return {.batch = {order_[place_]}, .judgement = known_[place_], .whole = known_[place_]};
 }
 
 TimeSteps::Found TimeSteps::next() {
@@ -238,8 +248,8 @@ TimeSteps::Found TimeSteps::next() {
   const std::vector<Element> list = candidates();
   Found found = by_bounds(list);
   const bool is_large = target_.modules().size() > kExactModuleCount;
-  const std::size_t few = std::min({is_large ? kCheckedMaxOfLarge : kCheckedMax, list.size(),
-                                    task_.parallel_max});
+  const std::size_t few =
+      std::min({is_large ? kCheckedMaxOfLarge : kCheckedMax, list.size(), task_.parallel_max});
   if (found.batch.size() < few) {
     Found checked = by_checks(list);
     if (checked.batch.size() > found.batch.size()) {
@@ -259,8 +269,9 @@ bool TimeSteps::take(Found found) {
   if (!judged.is_safe() && !is_known) {
     return false;
   }
-  if (found.batch.size() == 1 && judged.is_safe()) {
-    found.judgement = judged;
+  found.whole = judged.is_safe() ? judged : known_[place_];
+  if (found.batch.size() == 1) {
+    found.judgement = found.whole;
   }
   state_ = std::move(state);
   solved_ = std::move(solved);
@@ -275,11 +286,10 @@ bool TimeSteps::take(Found found) {
 bool TimeSteps::seek_on() {
   RobotGrowth growth(task_.target, target_, state_, task_.rule, options_.thread_count);
   const std::size_t left = order_.size() - place_;
-  const Order found =
-      find_order(growth, {&state_, 1},
-                 {.seed = options_.seed,
-                  .state_count_max = kSoughtMin + kSoughtPerElement * left,
-                  .is_interrupted = [&] { return patience_.is_over(); }});
+  const Order found = find_order(growth, {&state_, 1},
+                                 {.seed = options_.seed,
+                                  .state_count_max = kSoughtMin + kSoughtPerElement * left,
+                                  .is_interrupted = [&] { return patience_.is_over(); }});
   state_count_ += found.state_count;
   if (found.outcome != OrderOutcome::kFound) {
     return false;
@@ -327,8 +337,8 @@ void TimeSteps::replace(Order& order) {
   state_ = order.start;
   tail_ = waiting_chains(target_, state_);
   follow(state_, order, 0);
-  const bool is_near = task_.rule.reach != Reach::kFree &&
-                       task_.parallel_max < order_.size() / kWindowOfWays;
+  const bool is_near =
+      task_.rule.reach != Reach::kFree && task_.parallel_max < order_.size() / kWindowOfWays;
   window_ = is_near ? kWindowOfWays * task_.parallel_max : std::max<std::size_t>(1, order_.size());
   while (state_.size() < target_.modules().size()) {
     if (patience_.is_over()) {
@@ -340,12 +350,26 @@ void TimeSteps::replace(Order& order) {
       options_.progress(order.state_count + state_count_, state_.size(), state_.size());
     }
   }
+  tell(order);
+}
+
+void TimeSteps::tell(Order& order) {
+  const bool is_apart = options_.told_end == Sense::kShrinking;
+  Judgement whole = order.judgements.front();
   order.steps.clear();
-  order.judgements.resize(1);
+  order.judgements.clear();
   for (Found& found : steps_) {
+    const bool has_parts = found.batch.size() > 1;
+    if (is_apart) {
+      order.judgements.push_back(has_parts ? both_of(whole, found.judgement) : whole);
+    } else {
+      order.judgements.push_back(whole);
+      found.whole = found.judgement;
+    }
+    whole = found.whole;
     order.steps.push_back(std::move(found.batch));
-    order.judgements.push_back(found.judgement);
   }
+  order.judgements.push_back(whole);
   order.state_count += state_count_;
   order.is_any_order = true;
 }

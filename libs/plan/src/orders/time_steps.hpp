@@ -28,8 +28,10 @@ class TimeSteps {
   TimeSteps(const OrderTask& task, const model::Robot& target, const RobotOrderOptions& options,
             const Patience& patience);
 
-  /// Replaces the steps of an order that was found, and their judgements. What is left when time
-  /// runs out comes as the order has it.
+  /// Replaces the steps of an order that was found, and their judgements, which are those of the
+  /// parts of each step, too: of the step that led to a state or, where the robot is taken apart
+  /// (RobotOrderOptions::told_end), of that by which it is left. What remains when time runs out
+  /// comes as the order has it.
   void replace(Order& order);
 
   /// The largest load ratio of states that were solved.
@@ -47,6 +49,7 @@ class TimeSteps {
   struct Found {
     Batch batch = {};
     Judgement judgement = {};
+    Judgement whole = {};  ///< Of all of them.
   };
 
   void follow(const ElementSet& state, const Order& order, std::size_t first);
@@ -63,6 +66,7 @@ class TimeSteps {
   void go_back();
   void finish();
   verdict::Assessment solve(const ElementSet& state);
+  void tell(Order& order);
 
   const OrderTask& task_;
   const model::Robot& target_;

@@ -147,8 +147,7 @@ void ReachFinder::for_each_move(const ElementSet& carrying, const ElementSet& ba
 std::vector<Cell> ReachFinder::surface(const ElementSet& carrying,
                                        const ElementSet& barring) const {
   std::vector<Cell> reached;
-  if (!rule_.source || !is_free(carrying, *rule_.source) ||
-      !is_beside(carrying, *rule_.source)) {
+  if (!rule_.source || !is_free(carrying, *rule_.source) || !is_beside(carrying, *rule_.source)) {
     return reached;
   }
   std::set<Cell> seen = {*rule_.source};
