@@ -243,15 +243,20 @@ void BatchBound::add_springs(const Footprint& print, Batch& batch) const {
   }
 }
 
-/// Adds how the robot before moves by a module.
-void BatchBound::add_answer(const Footprint& print, Batch& batch) const {
-  const model::Robot& robot = answers_->robot();
-  for (std::size_t i = 0; i < robot.connections().size(); ++i) {
+/// Adds what a module does to the connections of the robot before, if its answer is known.
+void BatchBound::add_ratios(const Footprint& print, Batch& batch) const {
+  for (std::size_t i = 0; i < batch.ratios.size(); ++i) {
+    const model::Robot& robot = answers_->robot();
     const model::Connection& pair = robot.connections()[i];
     const Vec force = bound_.beam().middle_force(pair.direction, print.answer[base::at(pair.a)],
                                                  print.answer[base::at(pair.b)]);
     batch.ratios[i] += std::max(0.0, model::load_ratio(robot.connector(pair), force).ratio);
   }
+}
+
+/// Adds how the robot before moves by a module.
+void BatchBound::add_answer(const Footprint& print, Batch& batch) const {
+  const model::Robot& robot = answers_->robot();
   for (const std::size_t facet : bound_.facets()) {
     const model::Facet& foot = target_.facets()[facet];
     const Vec& u = print.answer[base::at(core_place_[base::at(foot.module)])];
@@ -361,14 +366,12 @@ bool BatchBound::are_pressed(const Batch& batch, double radius) {
          });
 }
 
-/// What holds of all parts of a batch, if they are safe.
-std::optional<Judgement> BatchBound::judge(const Batch& batch) {
+/// |s - h w| of any part, errors included.
+double BatchBound::error_of(const Batch& batch) const {
   const Vec& stiffness = bound_.changes().stiffness();
   double energy = batch.own_energy;
-  double beam_ratio = 0;
   for (const auto& [index, beam] : batch.beams) {
     energy += beam.lack.energy(stiffness);
-    beam_ratio = std::max(beam_ratio, beam.load_ratio);
   }
   for (const auto& [facet, foot] : batch.own_feet) {
     energy += foot.change.energy(stiffness);
@@ -376,30 +379,40 @@ std::optional<Judgement> BatchBound::judge(const Batch& batch) {
   for (const auto& [facet, change] : batch.feet) {
     energy += answers_ ? 0 : change.energy(stiffness);
   }
-  const double error = std::sqrt(energy) + bound_.solved_error();
+  return std::sqrt(energy) + bound_.solved_error();
+}
+
+/// What no load ratio of any part exceeds.
+double BatchBound::ratio_of(const Batch& batch) const {
+  double beam_ratio = 0;
+  for (const auto& [index, beam] : batch.beams) {
+    beam_ratio = std::max(beam_ratio, beam.load_ratio);
+  }
   double ratio = bound_.solved_ratio() + beam_ratio;
   if (answers_) {
-    ratio = beam_ratio + bound_.ratio_per_norm() * bound_.solved_error();
+    ratio = beam_ratio;
     for (const double known : batch.ratios) {
-      ratio = std::max(ratio, known + bound_.ratio_per_norm() * bound_.solved_error());
+      ratio = std::max(ratio, known);
     }
+    ratio += bound_.ratio_per_norm() * bound_.solved_error();
   }
-  ratio += bound_.ratio_per_norm() * error / 2;
-  Judgement judgement{.verdict = verdict::Verdict::kSafe,
-                      .load_ratio_max = ratio,
-                      .load_ratio_high = ratio,
-                      .is_bound = true};
-  double room_mm = std::numeric_limits<double>::infinity();
+  return ratio + bound_.ratio_per_norm() * error_of(batch) / 2;
+}
+
+/// The smallest margin of any part, if they all stand with all their facets stuck; infinite where
+/// no polygon decides.
+std::optional<double> BatchBound::find_margin_mm(const Batch& batch) {
+  double margin_mm = std::numeric_limits<double>::infinity();
+  const double pitch = target_.material().pitch_mm;
   if (balance_) {
     std::vector<Element> modules;
     std::ranges::transform(batch.members, std::back_inserter(modules), &Footprint::module);
-    const double pitch = target_.material().pitch_mm;
-    judgement.margin_mm = balance_->margin_with_parts(modules) * pitch;
-    room_mm = *judgement.margin_mm - Balance::kMarginDoubt * pitch;
+    margin_mm = balance_->margin_with_parts(modules) * pitch;
   }
-  const bool is_safe = ratio < EnergyBound::kRatioMax && shift_mm(batch, error) < room_mm &&
-                       are_pressed(batch, error / 2);
-  return is_safe ? std::optional(judgement) : std::nullopt;
+  const double error = error_of(batch);
+  const bool stands = shift_mm(batch, error) < margin_mm - Balance::kMarginDoubt * pitch &&
+                      are_pressed(batch, error / 2);
+  return stands ? std::optional(margin_mm) : std::nullopt;
 }
 
 std::optional<Judgement> BatchBound::add(Element module) {
@@ -416,11 +429,21 @@ std::optional<Judgement> BatchBound::add(Element module) {
   }
   Batch next = batch_;
   take(*std::move(print), next);
-  auto judgement = judge(next);
-  if (judgement) {
-    batch_ = std::move(next);
+  const auto margin_mm = find_margin_mm(next);
+  if (!margin_mm) {
+    return std::nullopt;
   }
-  return judgement;
+  add_ratios(next.members.back(), next);
+  const double ratio = ratio_of(next);
+  if (!(ratio < EnergyBound::kRatioMax)) {
+    return std::nullopt;
+  }
+  batch_ = std::move(next);
+  return Judgement{.verdict = verdict::Verdict::kSafe,
+                   .load_ratio_max = ratio,
+                   .load_ratio_high = ratio,
+                   .margin_mm = balance_ ? margin_mm : std::nullopt,
+                   .is_bound = true};
 }
 
 }  // namespace holdfast::plan

@@ -113,12 +113,15 @@ class BatchBound {
   void find_inverse(std::span<const Footprint> prints);
   void settle(Footprint& print, CoreAnswers::Vecs answer);
   void add_springs(const Footprint& print, Batch& batch) const;
+  void add_ratios(const Footprint& print, Batch& batch) const;
   void add_answer(const Footprint& print, Batch& batch) const;
   void add_following(const Footprint& print, const Footprint& moving, Batch& batch);
   void take(Footprint print, Batch& batch);
   double shift_mm(const Batch& batch, double error) const;
   bool are_pressed(const Batch& batch, double radius);
-  std::optional<Judgement> judge(const Batch& batch);
+  double error_of(const Batch& batch) const;
+  double ratio_of(const Batch& batch) const;
+  std::optional<double> find_margin_mm(const Batch& batch);
 
   const model::RobotSpec& spec_;
   const model::Robot& target_;

@@ -31,6 +31,10 @@ constexpr std::size_t kRefusedMax = 256;
 constexpr std::size_t kSoughtPerElement = 2;
 constexpr std::size_t kSoughtMin = 256;
 
+/// Another order is sought after this number of steps out of step with the one that is followed, as
+/// time may run out, and what is behind the last mark would be lost.
+constexpr std::size_t kStepsPerMark = 24;
+
 /// Where ways matter modules come out of turn by so many batches at most: others may be in the way.
 constexpr std::size_t kWindowOfWays = 8;
 
@@ -309,6 +313,9 @@ void TimeSteps::go_back() {
 void TimeSteps::step() {
   if (is_in_step()) {
     mark_ = {.state = state_, .place = place_, .step_count = steps_.size()};
+  } else if (steps_.size() - mark_.step_count >= kStepsPerMark &&
+             steps_.size() % kStepsPerMark == 0) {
+    seek_on();
   }
   Found found = window_ == 1 && is_in_step() ? next_of_order() : next();
   const bool is_stuck = found.batch.empty();
