@@ -164,7 +164,7 @@ std::optional<std::pair<std::size_t, int>> place_of(const std::optional<plan::St
 std::size_t parallel_of(const py::handle& given) {
   constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
   if (!py::isinstance<py::str>(given)) {
-    return integer_of(given, "parallel", 1, kAll);
+    return integer_of(given, "parallel", 1, 1'000'000'000);
   }
   const std::string word = utf8_of(given, "parallel");
   if (word != "all") {

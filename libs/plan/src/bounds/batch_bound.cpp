@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "holdfast/base/check.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/model/connector_law.hpp"
 #include "holdfast/plan/robot_state.hpp"
@@ -40,6 +41,7 @@ bool BatchBound::begin(const ElementSet& core, const verdict::Assessment& solved
   core_ = core;
   batch_ = {};
   prepared_.clear();
+  followed_.clear();
   answers_.reset();
   balance_.reset();
   const std::vector<Element> elements = core.elements();
@@ -144,9 +146,7 @@ std::vector<PointLoad> BatchBound::loads_of(const Footprint& print) {
     loads[column] = first[column / 6].force[column % 6];
   }
   std::vector<PointLoad> settled;
-  if (!system.factor()) {
-    return settled;
-  }
+  HOLDFAST_CHECK(system.factor());  // Stiffer by what is positive.
   system.solve(loads);
   for (std::size_t i = 0; i < first.size(); ++i) {
     PointLoad& load =
@@ -239,6 +239,9 @@ void BatchBound::add_springs(const Footprint& print, Batch& batch) const {
     const auto mate = std::ranges::find(batch.members, other, &Footprint::module);
     if (other != model::Robot::kNoNeighbour && mate != batch.members.end()) {
       weigh(changes.gap_between(base::at(print.module), d, print.u, mate->u));
+      batch.pairs.push_back({.later = batch.members.size(),
+                             .earlier = static_cast<std::size_t>(mate - batch.members.begin()),
+                             .direction = d});
     }
   }
 }
@@ -272,23 +275,37 @@ void BatchBound::add_answer(const Footprint& print, Batch& batch) const {
   batch.moved.add(moved);
 }
 
-/// Adds how a module goes with the robot before where another one moves that.
+/// How a module goes with the robot before where another one moves that.
+const base::Vec6<double>& BatchBound::followed(const Footprint& print, const Footprint& moving) {
+  const auto [found, is_first] = followed_.try_emplace({print.module, moving.module});
+  if (is_first && print.module != moving.module) {
+    found->second = bound_.follow(base::at(print.module), [&](std::size_t other) {
+      return moving.answer[base::at(core_place_[other])];
+    });
+  }
+  return found->second;
+}
+
+/// Adds a gap that a beam may have, or not.
+void BatchBound::add_gap(const ChangedForces::Spring& spring, Batch& batch) const {
+  Beam& beam = batch.beams[spring.index];
+  beam.lack.add(spring.gap);
+  beam.load_ratio += std::max(0.0, bound_.changes().half_ratio(spring));
+}
+
+/// Adds what a module goes by with the robot before where another one moves that.
 void BatchBound::add_following(const Footprint& print, const Footprint& moving, Batch& batch) {
   const std::size_t module = base::at(print.module);
-  const auto moved = [&](std::size_t other) { return moving.answer[base::at(core_place_[other])]; };
-  const Vec u = bound_.follow(module, moved);
+  const Vec& u = followed(print, moving);
   batch.moved.add({target_.mass(module) * u[0], target_.mass(module) * u[1], 0, 0, 0, 0});
-  const ChangedForces& changes = bound_.changes();
   for (const base::Direction direction : base::directions(target_.lattice())) {
     const int d = base::index(direction);
     const std::int32_t other = target_.connected()[module][base::at(d)];
-    if (other == model::Robot::kNoNeighbour || !core_.contains(other)) {
-      continue;
+    if (other != model::Robot::kNoNeighbour && core_.contains(other)) {
+      add_gap(bound_.changes().gap_between(module, d, u,
+                                           moving.answer[base::at(core_place_[base::at(other)])]),
+              batch);
     }
-    const auto spring = changes.gap_between(module, d, u, moved(base::at(other)));
-    Beam& beam = batch.beams[spring.index];
-    beam.lack.add(spring.gap);
-    beam.load_ratio += std::max(0.0, changes.half_ratio(spring));
   }
   for (auto& [facet, foot] : batch.own_feet) {
     if (target_.facets()[facet].module == print.module) {
@@ -297,20 +314,28 @@ void BatchBound::add_following(const Footprint& print, const Footprint& moving, 
   }
 }
 
-void BatchBound::take(Footprint print, Batch& batch) {
-  add_springs(print, batch);
-  if (answers_) {
-    add_answer(print, batch);
-    for (std::size_t facet = 0; facet < target_.facets().size(); ++facet) {
-      if (target_.facets()[facet].module == print.module) {
-        batch.own_feet[facet].u = print.u;
-      }
-    }
-    for (const Footprint& mate : batch.members) {
-      add_following(print, mate, batch);
-      add_following(mate, print, batch);
+/// Adds what the last module moves others by, and these that one; and what beams between two that
+/// come gain by any third.
+void BatchBound::add_followings(Batch& batch) {
+  const std::size_t last = batch.members.size() - 1;
+  for (std::size_t i = 0; i < last; ++i) {
+    add_following(batch.members[last], batch.members[i], batch);
+    add_following(batch.members[i], batch.members[last], batch);
+  }
+  for (const Pair& pair : batch.pairs) {
+    const Footprint& a = batch.members[pair.later];
+    const Footprint& b = batch.members[pair.earlier];
+    for (std::size_t i = pair.later == last ? 0 : last; i <= last; ++i) {
+      const Footprint& moving = batch.members[i];
+      add_gap(bound_.changes().gap_between(base::at(a.module), pair.direction, followed(a, moving),
+                                           followed(b, moving)),
+              batch);
     }
   }
+}
+
+void BatchBound::take(Footprint print, Batch& batch) {
+  add_springs(print, batch);
   const double mass = target_.mass(base::at(print.module));
   batch.moved.add({mass * print.u[0], mass * print.u[1], 0, 0, 0, 0});
   batch.own_energy += print.own_energy;
@@ -318,6 +343,17 @@ void BatchBound::take(Footprint print, Batch& batch) {
   batch.sway[print.root] += print.sway;
   batch.hosts.insert(batch.hosts.end(), print.hosts.begin(), print.hosts.end());
   batch.members.push_back(std::move(print));
+  if (!answers_) {
+    return;
+  }
+  const Footprint& last = batch.members.back();
+  add_answer(last, batch);
+  for (std::size_t facet = 0; facet < target_.facets().size(); ++facet) {
+    if (target_.facets()[facet].module == last.module) {
+      batch.own_feet[facet].u = last.u;
+    }
+  }
+  add_followings(batch);
 }
 
 /// How far bending moves the centre of mass of any part, in plan, at most.

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "balance.hpp"
@@ -93,9 +94,17 @@ class BatchBound {
     CoreAnswers::Vecs answer = {};  ///< How the robot before moves, if that is known.
   };
 
+  /// Two members that are neighbours, by place.
+  struct Pair {
+    std::size_t later = 0;
+    std::size_t earlier = 0;
+    int direction = 0;  ///< From the later one.
+  };
+
   /// All that is known of a batch.
   struct Batch {
     std::vector<Footprint> members;
+    std::vector<Pair> pairs;
     std::map<std::size_t, Beam> beams;
     std::map<std::size_t, Span> feet;  ///< Changes of s.
     std::map<std::size_t, OwnFoot> own_feet;
@@ -115,6 +124,9 @@ class BatchBound {
   void add_springs(const Footprint& print, Batch& batch) const;
   void add_ratios(const Footprint& print, Batch& batch) const;
   void add_answer(const Footprint& print, Batch& batch) const;
+  const Vec& followed(const Footprint& print, const Footprint& moving);
+  void add_gap(const ChangedForces::Spring& spring, Batch& batch) const;
+  void add_followings(Batch& batch);
   void add_following(const Footprint& print, const Footprint& moving, Batch& batch);
   void take(Footprint print, Batch& batch);
   double shift_mm(const Batch& batch, double error) const;
@@ -132,6 +144,7 @@ class BatchBound {
   std::unique_ptr<CoreAnswers> answers_;  ///< None: loads go down ways.
   std::vector<std::int32_t> core_place_;  ///< By module: in the core, or -1.
   std::map<Element, Footprint> prepared_;
+  std::map<std::pair<Element, Element>, Vec> followed_;  ///< Of whom by whom.
   Batch batch_;
 };
 

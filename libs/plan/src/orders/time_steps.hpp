@@ -83,6 +83,7 @@ class TimeSteps {
   std::vector<std::size_t> places_;  ///< By module, in the order.
   std::size_t window_ = 0;           ///< Modules come before their turn by so many places.
   Mark mark_;
+  std::size_t steps_to_mark_ = 0;  ///< Another order is sought after so many since.
   // What has been reached.
   ElementSet state_;
   std::size_t place_ = 0;  ///< The first of the order that is not there.
