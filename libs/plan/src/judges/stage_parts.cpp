@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bounds/batch_bound.hpp"
+#include "bounds/run_judge.hpp"
 #include "judges/stage_judge.hpp"
 #include "part_of.hpp"
 

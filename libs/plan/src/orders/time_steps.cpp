@@ -100,7 +100,8 @@ Judgement both_of(const Judgement& a, const Judgement& b) {
 std::size_t step_count_least(const model::Robot& target, const ElementSet& start,
                              std::size_t parallel_max) {
   const std::size_t count = target.modules().size() - start.size();
-  const int farthest = std::ranges::max(steps_from(target, start));
+  const std::vector<int> distance = steps_from(target, start);
+  const int farthest = *std::ranges::max_element(distance);
   return std::max(base::at(farthest), count / parallel_max + (count % parallel_max == 0 ? 0 : 1));
 }
 
