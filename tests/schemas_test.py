@@ -253,6 +253,8 @@ def commands(scenarios, tests):
     yield ['next', 'cube.json', '--seconds', '0']
     yield ['order', 'cube.json', '--reverse']
     yield ['order', 'cube.json', '--reach', 'line', '--from', 'row.json']
+    yield ['order', 'cube.json', '--parallel', 'all', '--reverse']
+    yield ['order', f'{plan}/pair.json', '--parallel', '3']
     yield ['order', f'{plan}/pair.json', '--strength-needed', '--scatter', '10%', '--lose-one']
     yield ['order', 'row.json', '--scatter', '10%', '--lose-one', '--safety-factor', '1.5']
     yield from (['order', f'{plan}/{name}.json'] for name in ('crane_near_limit', 'pair', 'arch'))

@@ -284,6 +284,11 @@ class Order(_Texts, _Judgements, _Sought):
         return self._held.batches
 
     @property
+    def steps_least(self) -> Optional[int]:
+        """With ``parallel``: from this start nothing takes fewer steps."""
+        return self._held.steps_least
+
+    @property
     def judgements(self) -> Table:
         """Of the start and of the state after each step, in the order of the steps.
 

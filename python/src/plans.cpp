@@ -200,16 +200,33 @@ io::Document order_document(const FoundOrder& report) {
   return take(io::order_steps(report.target, report.result.order, report.is_reversed));
 }
 
+/// How many modules come at a time: a number from 1, or "all".
+std::size_t parallel_of(const py::handle& given) {
+  constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+  if (!py::isinstance<py::str>(given)) {
+    return integer_of(given, "parallel", 1, 1'000'000'000);
+  }
+  const std::string word = utf8_of(given, "parallel");
+  if (word != "all") {
+    throw Error("parallel: expected a number of modules, or all, found '" + word + "'");
+  }
+  return kAll;
+}
+
 std::shared_ptr<FoundOrder> order(const Structure& target, const py::handle& start,
                                   const py::handle& reach_name, const py::handle& source,
                                   const py::handle& avoid, const py::handle& group,
-                                  bool is_reversed, bool is_exact, const py::handle& seed,
-                                  const py::handle& seconds, const py::handle& help_seconds,
-                                  const py::handle& threads, const py::dict& asked,
-                                  py::object progress) {
+                                  const py::handle& parallel, bool is_reversed, bool is_exact,
+                                  const py::handle& seed, const py::handle& seconds,
+                                  const py::handle& help_seconds, const py::handle& threads,
+                                  const py::dict& asked, py::object progress) {
   Watch watch(std::move(progress));
   OrderRequest request;
   request.group_size = integer_of(group, "group", 1, 16);
+  request.parallel_max = parallel_of(parallel);
+  if (request.group_size > 1 && request.parallel_max > 1) {
+    throw Error("group and parallel exclude each other");
+  }
   request.is_reversed = is_reversed;
   request.seed = seed_of(seed);
   request.seconds_max = seconds_of(seconds, "seconds");
@@ -467,6 +484,8 @@ void add_order(py::module_& module) {
                              [](const FoundOrder& r) { return r.result.load_ratio_max; })
       .def_property_readonly("load_ratio_bound",
                              [](const FoundOrder& r) { return r.result.load_ratio_bound; })
+      .def_property_readonly("steps_least",
+                             [](const FoundOrder& r) { return r.result.step_count_least; })
       .def_property_readonly("margin_min_mm",
                              [](const FoundOrder& r) { return r.result.margin_min_mm; })
       .def_property_readonly("seconds", [](const FoundOrder& r) { return r.seconds; })

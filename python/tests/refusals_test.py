@@ -20,6 +20,7 @@ CALLS = {
     'threads of order': lambda given: holdfast.order(ROBOT, threads=given),
     'threads of move': lambda given: holdfast.move(ROBOT, ROBOT, threads=given),
     'group': lambda given: holdfast.order(ROBOT, group=given),
+    'parallel': lambda given: holdfast.order(ROBOT, parallel=given),
     'size': lambda given: holdfast.generate('cube', given),
 }
 SEEDS = {

@@ -74,4 +74,34 @@ for signal in INT TERM; do
 done
 
 [ "$faults" -eq 0 ] || exit 1
+# Several at a time: the steps are marked, and the program judges every part of each.
+"$program" generate ball 5 -o ball.json
+expect_exit 0 order ball.json --parallel 4 -o several.json --json several_report.json
+grep -q '"any_order": true' several.json || fault 'no step is marked'
+expect_exit 0 steps several.json
+python3 - <<'PYTHON' || fault 'no schedule of four at a time'
+import json
+steps = json.load(open('several.json'))['steps']
+report = json.load(open('several_report.json'))
+assert max(len(step['attach']) for step in steps) == 4
+assert report['steps'] == len(steps) >= report['parallel']['steps_least']
+PYTHON
+expect_exit 0 order ball.json --parallel all --reverse -o back.json
+expect_exit 0 steps back.json
+# A step of which one part topples: together they stand.
+printf '{"format": "holdfast-structure", "version": 2, "modules": %s, "steps": [%s]}' \
+  '[[0,0,0], [0,0,1], [1,0,1]]' '{"attach": [[2,0,1], [-1,0,1]], "any_order": true}' >parts.json
+expect_exit 1 steps parts.json
+expect_line out 'that is when of 2 modules in any order one alone is there: .2,0,1.'
+sed -i 's/true/false/' parts.json
+expect_exit 0 steps parts.json
+sed -i 's/"any_order": false/"detach": [[1,0,1]], "any_order": true/' parts.json
+expect_exit 65 steps parts.json
+expect_line err 'only a step that attaches, or only detaches, is done in any order'
+expect_exit 64 order ball.json --parallel 0
+expect_exit 64 order ball.json --parallel some
+expect_exit 64 order ball.json --parallel 2 --group 2
+expect_exit 64 order ball.json --parallel 2 --strength-needed
+expect_exit 65 order ball.json --parallel 2 --lose-one
+
 echo "order: all as expected"

@@ -104,6 +104,7 @@ _holdfast() {
         --source) : ;;
         --avoid) : ;;
         --group) : ;;
+        --parallel) words="all" ;;
         --seed) : ;;
         --seconds) : ;;
         --help-seconds) : ;;
@@ -126,7 +127,7 @@ _holdfast() {
         --support-z) : ;;
         --pitch) : ;;
         --safety-factor|--margin) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --from --reach --source --avoid --group --reverse --seed --exact --seconds --help-seconds --threads -q --quiet -o --output --json --csv --html --certificate --strength-needed --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --from --reach --source --avoid --group --parallel --reverse --seed --exact --seconds --help-seconds --threads -q --quiet -o --output --json --csv --html --certificate --strength-needed --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin"; else files=1; fi ;;
       esac
       ;;
     move)

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <charconv>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <string_view>
 
@@ -28,6 +30,7 @@ struct OrderArguments {
   std::string source;
   std::vector<std::string> avoid;
   std::size_t group_size = 1;
+  std::string parallel = "1";
   bool is_reversed = false;
   bool is_exact = false;
   bool is_strength_wanted = false;
@@ -85,6 +88,17 @@ std::optional<std::vector<base::Cell>> cells_of_text(std::string_view text) {
   return cells.empty() ? std::nullopt : std::optional(std::move(cells));
 }
 
+/// How many modules come at a time: a number, or "all".
+std::optional<std::size_t> parallel_of_text(const std::string& text) {
+  if (text == "all") {
+    return std::numeric_limits<std::size_t>::max();
+  }
+  std::size_t count = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
+  const bool is_number = error == std::errc() && end == text.data() + text.size();
+  return is_number && count > 0 ? std::optional(count) : std::nullopt;
+}
+
 /// All cells of a document that is to be the start.
 base::Result<std::vector<base::Cell>> start_cells(const OrderArguments& options,
                                                   const model::RobotSpec& target) {
@@ -119,6 +133,7 @@ base::Result<std::vector<base::Cell>> start_cells(const OrderArguments& options,
 
 OrderRequest request_of(const OrderArguments& options, Progress& progress) {
   OrderRequest request{.group_size = options.group_size,
+                       .parallel_max = parallel_of_text(options.parallel).value(),
                        .is_reversed = options.is_reversed,
                        .seed = options.seed,
                        .seconds_max = options.seconds,
@@ -309,6 +324,16 @@ void add_ways(CLI::App& command, OrderArguments& options) {
       ->type_name("K")
       ->check(CLI::Range(1, 16))
       ->capture_default_str();
+  command
+      .add_option("--parallel", options.parallel,
+                  "Attach up to R modules in each step, or all that can come, so that the robot is "
+                  "safe in whatever order they arrive")
+      ->type_name("R|all")
+      ->check([](const std::string& text) {
+        return parallel_of_text(text) ? "" : "expected a number of modules, or all";
+      })
+      ->excludes("--group")
+      ->capture_default_str();
   command.add_flag("--reverse", options.is_reversed,
                    "Take the robot apart, from the target to the start");
 }
@@ -369,7 +394,8 @@ Command add_order(CLI::App& app) {
   command
       ->add_flag("--strength-needed", options->is_strength_wanted,
                  "Find the least factor of all strengths with which there is a safe order")
-      ->excludes("--certificate");
+      ->excludes("--certificate")
+      ->excludes("--parallel");
   add_plan_failure_options(*command, options->failures);
   add_reading(*command, options->reading);
   add_safety_factor(*command, options->reading);
@@ -379,7 +405,9 @@ Command add_order(CLI::App& app) {
                         {"order arch.json --from pier.json -o plan.json",
                          "go on from what stands already, and keep the order"},
                         {"order arch.json --reverse", "take it apart"},
-                        {"order arch.json --reach line", "modules come straight in"}},
+                        {"order arch.json --reach line", "modules come straight in"},
+                        {"order arch.json --parallel 4",
+                         "four modules at a time, in whatever order they arrive"}},
            .notes = "Every state on the way is checked as by holdfast check; one that is "
                     "undecided does not count as safe. The first interrupt ends the search and "
                     "keeps what it has found.",

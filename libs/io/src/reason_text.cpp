@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "edge_text.hpp"
 #include "factor_text.hpp"
@@ -23,6 +25,22 @@ using Cells = std::span<const base::Cell>;
 /// Counts are among a reason's numbers.
 std::string counted(double count, std::string_view one, std::string_view many = {}) {
   return fmt::format("{:.0f} {}", count, host::noun(count == 1, one, many));
+}
+
+/// Says which part of a step in any order is meant, or that its parts are not known.
+std::string parts_text(const verdict::Reason& reason, Cells cells) {
+  const auto& n = reason.numbers;
+  if (reason.code == verdict::ReasonCode::kPartsNotKnown) {
+    return fmt::format(
+        "{} in any order have too many parts to check each, and no bound covers all of them; "
+        "steps of fewer may",
+        counted(n[0], "module"));
+  }
+  std::vector<std::string> names;
+  std::ranges::transform(cells, std::back_inserter(names), &model::text);
+  return fmt::format("that is when of {} in any order {} alone {} there: {}",
+                     counted(n[1], "module"), n[0] == 1 ? "one" : fmt::format("{}", n[0]),
+                     n[0] == 1 ? "is" : "are", fmt::join(names, ", "));
 }
 
 /// Writes the cell of a module that carries or is carried; "a cell" but in the stage of a step,
@@ -212,6 +230,9 @@ std::string load_text(const Reason& reason, Cells cells) {
       return second_order_text(n);
     case ReasonCode::kBendingMatters:
       return bending_text(n);
+    case ReasonCode::kPartHasCome:
+    case ReasonCode::kPartsNotKnown:
+      return parts_text(reason, cells);
     case ReasonCode::kBuckles:
     case ReasonCode::kCollapses:
       return losing_text(reason, cells);
@@ -298,8 +319,7 @@ std::string reason_text(const verdict::Reason& reason, std::span<const base::Cel
     case ReasonCode::kFeetSlip:
       return fmt::format(
           "{} until friction holds {}: the foot of {} then carries {:.4g} N sideways, {:.4g} of "
-          "its "
-          "pressure, by Coulomb's law for loads that grow from zero",
+          "its pressure, by Coulomb's law for loads that grow from zero",
           n[0] == 1 ? "one foot slips" : fmt::format("{} feet slip", n[0]),
           n[0] == 1 ? "it" : "them", model::text(cells[0]), n[2], n[3]);
     case ReasonCode::kGapsOpen:

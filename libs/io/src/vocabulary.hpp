@@ -153,8 +153,11 @@ inline constexpr auto kObstacleKeys =
     std::to_array<std::string_view>({"from", "to", "cells", "hold", "friction", "color"});
 inline constexpr auto kLoadKeys =
     std::to_array<std::string_view>({"cell", "force_n", "torque_nmm"});
-inline constexpr auto kStepKeys =
+inline constexpr std::string_view kAnyOrderKey = "any_order";
+inline constexpr auto kStepLists =
     std::to_array<std::string_view>({"attach", "detach", "move", "release", "connect"});
+inline constexpr auto kStepKeys =
+    joined(kStepLists, std::to_array<std::string_view>({kAnyOrderKey}));
 inline constexpr auto kMoveKeys = std::to_array<std::string_view>({"from", "to", "carrier"});
 
 /// Names of what an obstacle does, by model::Hold.

@@ -109,6 +109,36 @@ double Balance::margin() {
   return margin_of(hull_, mass_, moment_.x, moment_.y);
 }
 
+double Balance::margin_with_parts(std::span<const Element> modules) {
+  margin();
+  double smallest = hull_.empty() ? -std::numeric_limits<double>::infinity()
+                                  : std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < hull_.size(); ++i) {
+    const Point& a = hull_[i];
+    const Point& b = hull_[(i + 1) % hull_.size()];
+    const double length = std::hypot(b.x - a.x, b.y - a.y);
+    const auto inside = [&](double x, double y) {
+      return ((b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x)) / length;
+    };
+    std::vector<std::pair<double, double>> coming;  // How far inside, and the mass.
+    for (const Element module : modules) {
+      const Point& place = places_[base::at(module)];
+      coming.emplace_back(inside(place.x, place.y), masses_[base::at(module)]);
+    }
+    std::ranges::sort(coming);
+    double mass = mass_;
+    double margin = inside(moment_.x / mass, moment_.y / mass);
+    for (const auto& [distance, more] : coming) {
+      if (distance < margin) {  // What lies farther outside than the mean draws it there.
+        margin = (margin * mass + distance * more) / (mass + more);
+        mass += more;
+      }
+    }
+    smallest = std::min(smallest, margin);
+  }
+  return smallest;
+}
+
 bool Balance::stands_with(Element module) {
   const std::size_t i = base::at(module);
   const double mass = mass_ + masses_[i];

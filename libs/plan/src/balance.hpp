@@ -4,6 +4,7 @@
 
 #include <array>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "holdfast/model/robot.hpp"
@@ -29,6 +30,10 @@ class Balance {
   /// Distance of the centre of mass from the nearest edge of the support polygon, in pitches,
   /// negative outside; minus infinity without support.
   double margin();
+
+  /// What the margin is no less than whichever part of these modules comes: the smallest of each
+  /// edge of the polygon as it is, which feet that come only widen.
+  double margin_with_parts(std::span<const Element> modules);
 
   /// Whether the margin is positive with one more module, or with one less.
   bool stands_with(Element module);

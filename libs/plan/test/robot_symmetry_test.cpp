@@ -3,7 +3,7 @@
 //
 // A robot's turns and mirror images, counted by hand on shapes that have some of the eight of a
 // square, and the answers for cells that are images of one another against checks of each.
-#include "judges/robot_symmetry.hpp"
+#include "search/robot_symmetry.hpp"
 
 #include <gtest/gtest.h>
 

@@ -123,7 +123,9 @@ const char* name(ReasonCode code) {
                                                                        "touches_itself",
                                                                        "mass_moves",
                                                                        "second_order",
-                                                                       "bending_matters"};
+                                                                       "bending_matters",
+                                                                       "part_has_come",
+                                                                       "parts_not_known"};
   return kNames[static_cast<std::size_t>(code)];
 }
 

@@ -28,7 +28,8 @@ struct OrderRequest {
   std::vector<base::Cell> start = {};  ///< As of plan::OrderTask.
   plan::ReachRule rule = {};
   std::size_t group_size = 1;
-  bool is_reversed = false;  ///< Taken apart, from the target to the start.
+  std::size_t parallel_max = 1;  ///< As of plan::OrderTask.
+  bool is_reversed = false;      ///< Taken apart, from the target to the start.
   std::uint64_t seed = 0;
   double seconds_max = std::numeric_limits<double>::infinity();
   double help_seconds_max = 0;  ///< Where there is no order: time to seek help; 0: none is sought.
@@ -69,7 +70,8 @@ inline constexpr double kNeededDigits = 1e-4;
 
 /// Seeks it by searches with other strengths, all of them together within the time of the request.
 /// What is safe with weaker magnets is safe with stronger ones, so every search tells one side.
-/// Errors: those of seek_order().
+/// Errors: those of seek_order(); several modules are to come at a time, whose load ratios are
+/// bounds.
 base::Result<StrengthNeeded> seek_strength_needed(const io::Document& target,
                                                   const OrderRequest& request);
 

@@ -185,6 +185,11 @@ base::Result<PlanFailures> find_plan_failures(const io::Document& document,
   if (!sequence) {
     return sequence.error();
   }
+  if (std::ranges::any_of(sequence.value().steps, &model::Step::is_any_order)) {
+    return base::bad_input(
+        "some steps are done in any order: how sure their parts are, and what may be lost then, is "
+        "not known; expected steps whose modules come together or one by one");
+  }
   PlanWalk walk(document, wish);
   auto error = for_each_step(sequence.value().start, sequence.value().steps,
                              [&](const plan::RobotState& robot, const model::Step& step,

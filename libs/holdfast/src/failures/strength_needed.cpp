@@ -31,6 +31,9 @@ class Bottleneck {
   }
 
   base::Result<StrengthNeeded> find() && {
+    if (request_.parallel_max > 1) {
+      return base::bad_input("which strength is needed is found for modules one after another");
+    }
     double factor = 1;
     while (is_open()) {
       auto report = with(factor);

@@ -280,13 +280,22 @@ model::Step plan_step(JsonReading& reading, const Json& value, const JsonPlace& 
       step.release = pairs(reading, member, here);
     } else if (key == "connect") {
       step.connect = pairs(reading, member, here);
+    } else if (key == kAnyOrderKey) {
+      step.is_any_order = reading.boolean(member, here);
     } else {
       reading.note_unknown_key(here, kStepKeys);
     }
   }
-  if (step == model::Step{}) {
+  if (step == model::Step{.is_any_order = step.is_any_order}) {
     reading.fail(place, fmt::format("expected an entry in at least one of \"{}\", found none",
-                                    fmt::join(kStepKeys, "\", \"")));
+                                    fmt::join(kStepLists, "\", \"")));
+  }
+  const bool is_one_list = step == model::Step{.attach = step.attach, .is_any_order = true} ||
+                           step == model::Step{.detach = step.detach, .is_any_order = true};
+  if (step.is_any_order && !is_one_list) {
+    reading.fail(place.at(kAnyOrderKey),
+                 "only a step that attaches, or only detaches, is done in any order: expected "
+                 "nothing else beside \"attach\" or \"detach\"");
   }
   return step;
 }

@@ -91,6 +91,9 @@ std::string step_object(const model::Step& step) {
   });
   add("release", step.release, pairs_text);
   add("connect", step.connect, pairs_text);
+  if (step.is_any_order) {
+    members.push_back(member(kAnyOrderKey, "true"));
+  }
   return object(members);
 }
 

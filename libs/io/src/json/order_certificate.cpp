@@ -330,6 +330,7 @@ base::Result<Document> order_steps(const Document& target, const plan::Order& or
   std::vector<model::Step>& plan = document.extension.plan;
   for (const plan::Batch& group : order.steps) {
     model::Step& step = plan.emplace_back();
+    step.is_any_order = order.is_any_order && group.size() > 1;
     for (const plan::Element element : group) {
       const base::Cell& cell = spec.value().existing[static_cast<std::size_t>(element)];
       (is_reversed ? step.detach : step.attach).push_back(cell);
@@ -349,6 +350,11 @@ base::Result<Document> order_steps(const Document& target, const plan::Order& or
   std::vector<Step> planned;
   std::vector<OwnParameters> own;
   if (is_any_special(spec.value(), later)) {
+    if (std::ranges::any_of(plan, &model::Step::is_any_order)) {
+      return base::bad_input(
+          "modules that are attached have kinds or masses of their own, which steps in any order "
+          "cannot say: expected modules one after another");
+    }
     own = plan_modules(document, std::exchange(plan, {}), planned);
   }
   leave_out(document, later);

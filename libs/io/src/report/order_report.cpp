@@ -135,6 +135,46 @@ std::string none_words(const OrderReport& report) {
                      closure.blocked.size() == 1 ? "is" : "are");
 }
 
+std::size_t largest_batch(const plan::Order& order) {
+  std::size_t largest = 0;
+  for (const plan::Batch& group : order.steps) {
+    largest = std::max(largest, group.size());
+  }
+  return largest;
+}
+
+/// Says how many steps there are, and what they hold.
+std::string found_words(const OrderReport& report) {
+  const plan::Order& order = report.result.order;
+  const std::string steps = host::counted(order.steps.size(), "step");
+  const auto is_of_several = [](const plan::Batch& group) { return group.size() > 1; };
+  if (!order.is_any_order) {
+    return fmt::format(
+        "FOUND       {}, every state {} is safe\n{}", steps,
+        report.is_reversed ? "left behind" : "on the way",
+        std::ranges::none_of(order.steps, is_of_several)
+            ? ""
+            : "  at once     modules of one step have to arrive at the same instant: states in "
+              "between are not judged\n");
+  }
+  const std::size_t count = report.task.target.existing.size() - order.start.size();
+  return fmt::format(
+      "FOUND       {} for {}, safe whichever part of a step has {}\n"
+      "  at a time   {} at most; from this start nothing takes fewer than {}\n",
+      steps, host::counted(count, "module"), report.is_reversed ? "gone" : "come",
+      host::counted(largest_batch(order), "module"),
+      host::counted(report.result.step_count_least.value_or(0), "step"));
+}
+
+std::string parallel_text(const OrderReport& report) {
+  const auto& least = report.result.step_count_least;
+  const std::size_t most = report.task.parallel_max;
+  const bool is_all = most >= report.task.target.existing.size();
+  return most == 1 ? "null"
+                   : object({member("modules_max", is_all ? "null" : fmt::format("{}", most)),
+                             member("steps_least", least ? fmt::format("{}", *least) : "null")});
+}
+
 /// A line, or nothing if no load is known.
 std::string load_ratio_words(const plan::RobotOrder& result) {
   if (!result.load_ratio_max) {
@@ -182,6 +222,7 @@ std::string order_json(const OrderReport& report, const std::vector<std::string>
                        member("seconds", json_text(report.seconds)),
                        member("start", json_text(cells_of(report, order.start.elements()))),
                        member("way", array(way_items(report), 2)),
+                       member("parallel", parallel_text(report)),
                        member("help", help_text(report)),
                        member("certificate", certificate)};
   items.insert(items.end(), found.begin(), found.end());
@@ -224,14 +265,7 @@ std::string order_text(const OrderReport& report) {
     return "NONE        there is no safe order that keeps the robot in one piece\n" +
            none_words(report) + help_words(report) + examined;
   }
-  std::string text = fmt::format("FOUND       {}, every state {} is safe\n",
-                                 host::counted(order.steps.size(), "step"),
-                                 report.is_reversed ? "left behind" : "on the way");
-  if (std::ranges::any_of(order.steps, [](const auto& group) { return group.size() > 1; })) {
-    text +=
-        "  at once     modules of one step have to arrive at the same instant: states in between "
-        "are not judged\n";
-  }
+  std::string text = found_words(report);
   text += load_ratio_words(report.result);
   if (report.result.margin_min_mm) {
     text += fmt::format("  margin      {} mm at least on the way\n",

@@ -21,9 +21,6 @@ namespace {
 using base::Vec6;
 using mechanics::ContactState;
 
-/// A bound this near to 1 is not trusted: multigrid's load ratios are within 1e-4.
-constexpr double kRatioMax = 1 - 1e-3;
-
 /// New modules above a section are brought into balance so many times there and back.
 constexpr int kSweepCount = 2;
 
@@ -152,7 +149,6 @@ verdict::MovedMass EnergyBound::moved_mass() const {
   return moved;
 }
 
-/// The force on a stuck facet whose module moves by u, in the facet's middle.
 EnergyBound::Vec EnergyBound::trial_force(const model::Facet& facet, const Vec& u) const {
   return mechanics::trial_force(solver::ground_facet(target_, {.gamma = 0}),
                                 beam_.to_local(facet.direction, u));
@@ -172,13 +168,33 @@ void EnergyBound::look_at_facet(std::size_t index) {
   for (std::size_t i = 0; is_new && i < 6; ++i) {
     change[i] -= moved[i];
   }
+  room_[index] = room_with(index, u_[module], change);
+}
+
+double EnergyBound::room_with(std::size_t index, const Vec& u, const Vec& change) const {
+  const model::Facet& facet = target_.facets()[index];
   if (facet.is_bonded()) {
-    room_[index] = std::numeric_limits<double>::infinity();
-    return;
+    return std::numeric_limits<double>::infinity();
   }
+  const Vec moved = trial_force(facet, u);
   const double limit = -(moved[2] + change[2] / 2) * target_.foot_half_width_mm();
-  room_[index] = std::min((limit - std::abs(moved[3] + change[3] / 2)) / facet_per_norm_x_,
-                          (limit - std::abs(moved[4] + change[4] / 2)) / facet_per_norm_y_);
+  return std::min((limit - std::abs(moved[3] + change[3] / 2)) / facet_per_norm_x_,
+                  (limit - std::abs(moved[4] + change[4] / 2)) / facet_per_norm_y_);
+}
+
+bool EnergyBound::are_pressed_with(std::span<const std::size_t> hosts, double radius,
+                                   const std::function<double(std::size_t)>& room,
+                                   const std::function<Changes(std::size_t)>& changes) {
+  const auto mark = [&](bool is_host) {
+    std::ranges::for_each(hosts, [&](std::size_t host) { nodes_[host].is_host = is_host; });
+  };
+  const double reach = radius + solved_error_ / 2;
+  mark(true);
+  const bool are_all = std::ranges::all_of(facets_, [&](std::size_t facet) {
+    return reach < room(facet) || is_pressed_nearby(facet, reach, changes(facet));
+  });
+  mark(false);
+  return are_all;
 }
 
 /// What a module's load costs if it goes straight down, through a single file of modules.
@@ -199,7 +215,6 @@ bool EnergyBound::is_far_aside(std::size_t module) const {
   return way_energy(module) > kSpreadShare * norm_max * norm_max;
 }
 
-/// What a module's beams put on its neighbours, but for fixed ones.
 std::vector<LoadSpread::Load> EnergyBound::loads_beside(std::size_t module) const {
   std::vector<LoadSpread::Load> loads;
   local_.for_each_neighbour(module, [&](base::Direction direction, std::size_t other) {
@@ -419,7 +434,7 @@ void EnergyBound::forget_changes() {
 
 /// Whether a facet that was there when the robot was solved stays stuck, as far as the
 /// modules near it show, if |s - h w| / 2 is no more than `radius`.
-bool EnergyBound::is_pressed_nearby(std::size_t index, double radius) {
+bool EnergyBound::is_pressed_nearby(std::size_t index, double radius, const Changes& changes) {
   const model::Facet& facet = target_.facets()[index];
   const Node& node = nodes_[base::at(facet.module)];
   if (node.is_new) {
@@ -438,19 +453,22 @@ bool EnergyBound::is_pressed_nearby(std::size_t index, double radius) {
   const Vec force = trial_force(facet, u_[base::at(facet.module)]);
   const double b = target_.foot_half_width_mm();
   const auto holds = [&](double torque, double mx, double my, double lack_per_norm) {
-    const double slack = -force[2] * b - std::abs(torque) - lack_per_norm * solved_error_;
+    const double slack = -(force[2] + changes.high[2]) * b - torque - lack_per_norm * solved_error_;
     return std::ranges::all_of(std::array{1.0, -1.0}, [&](double sign) {
       return 2 * radius * nearby->gram->norm({b, sign * mx, sign * my}) < slack;
     });
   };
-  return holds(force[3], 1, 0, facet_per_norm_x_) && holds(force[4], 0, 1, facet_per_norm_y_);
+  const auto torque = [&](std::size_t i) {
+    return std::max(std::abs(force[i] + changes.high[i]), std::abs(force[i] + changes.low[i]));
+  };
+  return holds(torque(3), 1, 0, facet_per_norm_x_) && holds(torque(4), 0, 1, facet_per_norm_y_);
 }
 
 /// Counts all that are doubtful, as one that is known better makes room for the next only.
 bool EnergyBound::are_pressed(double radius) {
   bool are_all = true;
   for (const std::size_t facet : facets_) {
-    if (radius < room_[facet] || is_pressed_nearby(facet, radius)) {
+    if (radius < room_[facet] || is_pressed_nearby(facet, radius, {})) {
       continue;
     }
     const double strain = strain_by_adjoint(facet);
@@ -489,11 +507,8 @@ double EnergyBound::strain_by_adjoint(std::size_t index) {
   return largest;
 }
 
-std::optional<double> EnergyBound::add(Element element) {
-  const std::size_t module = base::at(element);
-  if (!has_core_ || target_.modules()[module].support == model::Support::kFixed) {
-    return std::nullopt;
-  }
+/// A module is there, in balance with its neighbours where there is no section.
+void EnergyBound::place(std::size_t module) {
   choose_way(module);
   Node& node = nodes_[module];
   node.is_there = true;
@@ -504,19 +519,41 @@ std::optional<double> EnergyBound::add(Element element) {
   before_.looked_at.clear();
   add_sway(module);
   if (section_ != nullptr) {
-    return add_above_section(module);
+    return;
   }
   take_place(module);
   moved_.add(target_.mass(module), u_[module][0], u_[module][1]);
-  open_gaps(module);
+  new_.push_back(module);
   for (std::size_t facet = first_facet_[module]; facet < first_facet_[module + 1]; ++facet) {
     facets_.push_back(facet);
-    if (facet > first_facet_[module]) {
-      look_at_facet(facet);
-    }
   }
-  new_.push_back(module);
   watched_.attach(module);
+}
+
+base::Vec6<double> EnergyBound::follow(std::size_t module,
+                                       const std::function<Vec(std::size_t)>& displacement) {
+  std::vector<LocalBalance::Beam> beams;
+  local_.add_beams(module, beams);
+  Vec rest{};
+  for (const LocalBalance::Beam& beam : beams) {
+    base::add_times(rest, -1, block_product(*beam.block_12, displacement(beam.other)));
+  }
+  return block_product(local_.stiffness(module).inverse, rest);
+}
+
+std::optional<double> EnergyBound::add(Element element) {
+  const std::size_t module = base::at(element);
+  if (!has_core_ || target_.modules()[module].support == model::Support::kFixed) {
+    return std::nullopt;
+  }
+  place(module);
+  if (section_ != nullptr) {
+    return add_above_section(module);
+  }
+  open_gaps(module);
+  for (std::size_t facet = first_facet_[module] + 1; facet < first_facet_[module + 1]; ++facet) {
+    look_at_facet(facet);
+  }
   if (!is_far_aside(module) || !spread(module)) {
     carry(module);
   }

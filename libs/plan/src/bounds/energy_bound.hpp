@@ -6,9 +6,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <vector>
 
 #include "bounds/adjoint.hpp"
@@ -117,6 +119,72 @@ class EnergyBound {
   /// The displacement of a module that has a facet, or is new or beside such a one.
   const base::Vec6<double>& displacement(std::size_t module) const { return u_[module]; }
 
+  /// Attaches a module that is not fixed as add() does, but that nothing is said of its load; it is
+  /// in balance with its neighbours where they are. In Use::kTrying.
+  void place(std::size_t module);
+
+  /// What a module's beams put on its neighbours, but for fixed ones.
+  std::vector<LoadSpread::Load> loads_beside(std::size_t module) const;
+
+  /// How a module moves that stays in balance while its neighbours in the robot that was begun with
+  /// move by `displacement`, by module of the target.
+  base::Vec6<double> follow(std::size_t module,
+                            const std::function<base::Vec6<double>(std::size_t)>& displacement);
+
+  const model::LatticeBeam<double>& beam() const { return beam_; }
+
+  /// The facets that are there.
+  const std::vector<std::size_t>& facets() const { return facets_; }
+
+  /// The force on a stuck facet whose module moves by u, in the facet's middle.
+  base::Vec6<double> trial_force(const model::Facet& facet, const base::Vec6<double>& u) const;
+
+  /// What the module that was added last has changed, in Use::kTrying.
+  const ChangedForces& changes() const { return changes_; }
+
+  double sway_square() const { return sway_square_; }
+
+  /// The module whose support bears a module that is there.
+  std::size_t root_of(std::size_t module) const { return nodes_[module].root; }
+
+  /// What pulls sideways on all ways to a support add up to; its module's index.
+  double sway_of(std::size_t root) const { return sway_[root]; }
+
+  /// What |s - h w| / 2 may be before a facet of the robot that is there tilts,
+  double room(std::size_t facet) const { return room_[facet]; }
+
+  /// and what it would be if its module moved by u, and s differed from h w by `change`.
+  double room_with(std::size_t facet, const base::Vec6<double>& u,
+                   const base::Vec6<double>& change) const;
+
+  /// What the force of a facet may change by, in the facet's middle.
+  struct Changes {
+    base::Vec6<double> low{};
+    base::Vec6<double> high{};
+  };
+
+  /// Whether all facets of the robot that was begun with stay stuck if |s - h w| / 2 is no more
+  /// than `radius`, by their rooms, and where these do not suffice as far as the modules near them
+  /// show if h w changes so there. Modules come beside `hosts`. In Use::kTrying, with nothing
+  /// added.
+  bool are_pressed_with(std::span<const std::size_t> hosts, double radius,
+                        const std::function<double(std::size_t facet)>& room,
+                        const std::function<Changes(std::size_t facet)>& changes);
+
+  /// What the robot that was begun with has: the largest load ratio, errors included; what its
+  /// displacements are off by in the energy norm, at most; its moved mass.
+  double solved_ratio() const { return solved_ratio_; }
+
+  double solved_error() const { return solved_error_; }
+
+  const verdict::MovedMass& still_moved() const { return still_moved_; }
+
+  /// The most that forces of energy 1 do to a load ratio.
+  double ratio_per_norm() const { return ratio_per_norm_; }
+
+  /// A bound of a load ratio this near to 1 is not trusted: multigrid's are within 1e-4.
+  static constexpr double kRatioMax = 1 - 1e-3;
+
  private:
   using Vec = base::Vec6<double>;
 
@@ -158,7 +226,6 @@ class EnergyBound {
   void open_gaps(std::size_t module);
   double way_energy(std::size_t from) const;
   bool is_far_aside(std::size_t module) const;
-  std::vector<LoadSpread::Load> loads_beside(std::size_t module) const;
   bool spread(std::size_t from);
   void bear(const LoadSpread::Share& share);
   void carry(std::size_t from);
@@ -167,8 +234,7 @@ class EnergyBound {
   void bear_by_section();
   verdict::MovedMass moved_mass() const;
   void look_at_facet(std::size_t facet);
-  Vec trial_force(const model::Facet& facet, const Vec& u) const;
-  bool is_pressed_nearby(std::size_t facet, double radius);
+  bool is_pressed_nearby(std::size_t facet, double radius, const Changes& changes);
   bool are_pressed(double radius);
   double strain_by_adjoint(std::size_t facet);
 

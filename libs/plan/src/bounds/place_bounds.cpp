@@ -30,7 +30,7 @@ model::RobotSpec with_all(const model::RobotSpec& spec, std::span<const base::Ce
 /// The adjoint of a facet that has left so many places without a bound, alone or with others, is
 /// found, which takes three solutions from nothing; but of so many facets at most.
 constexpr int kPlaceDoubtMin = 32;
-constexpr std::size_t kPlaceAdjointCountMax = 16;
+constexpr std::size_t kPlaceAdjointMax = 16;
 
 /// The most improvements of a place by solutions that follow.
 constexpr int kPlaceImprovementMax = 2;
@@ -54,7 +54,7 @@ class PlaceTrial {
       }
     }
     std::ranges::sort(ranked);
-    ranked.resize(std::min(ranked.size(), kPlaceAdjointCountMax));
+    ranked.resize(std::min(ranked.size(), kPlaceAdjointMax));
     if (!ranked.empty()) {
       find_adjoints_of(ranked);
       judge_open(solved, found);

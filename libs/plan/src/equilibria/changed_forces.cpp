@@ -70,10 +70,14 @@ void ChangedForces::clear() {
   load_ratio_ = 0;
 }
 
-ChangedForces::Spring& ChangedForces::beam_from(std::size_t module, int direction) {
+std::size_t ChangedForces::index_of(std::size_t module, int direction) const {
   const std::size_t first =
       direction % 2 == 0 ? module : at(target_->connected()[module][at(direction)]);
-  const std::size_t index = first * half_ + at(direction) / 2;
+  return first * half_ + at(direction) / 2;
+}
+
+ChangedForces::Spring& ChangedForces::beam_from(std::size_t module, int direction) {
+  const std::size_t index = index_of(module, direction);
   if (place_of_beam_[index] == kNone) {
     place_of_beam_[index] = static_cast<std::int32_t>(beams_.size());
     beams_.push_back({.index = index});
@@ -147,6 +151,11 @@ void ChangedForces::open_gap(std::size_t module, int direction, const Vec& u_mod
   Spring& beam = beam_from(module, direction);
   beam.gap = force_between(direction, u_module, u_other);
   weigh(beam);
+}
+
+ChangedForces::Spring ChangedForces::gap_between(std::size_t module, int direction,
+                                                 const Vec& u_module, const Vec& u_other) const {
+  return {.index = index_of(module, direction), .gap = force_between(direction, u_module, u_other)};
 }
 
 void ChangedForces::weigh_facet(std::size_t index, const Vec& moved) {

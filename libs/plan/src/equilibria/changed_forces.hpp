@@ -71,15 +71,32 @@ class ChangedForces {
 
   Vec facet_change(std::size_t facet) const { return facets_[facet].change; }
 
- private:
-  static constexpr std::int32_t kNone = -1;
-
   struct Spring {
     std::size_t index = 0;  ///< Of a beam: by module, then every other direction from it.
     Vec change{};           ///< Of s.
     Vec gap{};              ///< Of h w.
     double energy = 0;
   };
+
+  /// The beams that have changed since the last clear().
+  const std::vector<Spring>& beams() const { return beams_; }
+
+  /// The facets that may have, some several times.
+  const std::vector<std::size_t>& facets() const { return changed_facets_; }
+
+  double facet_energy(std::size_t facet) const { return facets_[facet].energy; }
+
+  /// The load ratio of half of what s and h w of a beam have changed by together.
+  double half_ratio(const Spring& beam) const { return ratio_of(beam, 1) / 2; }
+
+  /// The beam from a module in a direction if h w is all that changes, by how its ends lie.
+  Spring gap_between(std::size_t module, int direction, const Vec& u_module,
+                     const Vec& u_other) const;
+
+ private:
+  static constexpr std::int32_t kNone = -1;
+
+  std::size_t index_of(std::size_t module, int direction) const;
 
   /// Beams are known by the end from which they have an even direction.
   Spring& beam_from(std::size_t module, int direction);

@@ -14,7 +14,7 @@
 #include "holdfast/plan/candidates.hpp"
 #include "holdfast/solver/influence.hpp"
 #include "judges/rigid_look.hpp"
-#include "judges/robot_symmetry.hpp"
+#include "search/robot_symmetry.hpp"
 
 namespace holdfast::plan {
 

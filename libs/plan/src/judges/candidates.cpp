@@ -13,8 +13,8 @@
 
 #include "judges/bounded_candidates.hpp"
 #include "judges/candidate_judge.hpp"
-#include "judges/robot_symmetry.hpp"
 #include "patience.hpp"
+#include "search/robot_symmetry.hpp"
 
 namespace holdfast::plan {
 namespace {

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kStepMin = 8;
 
 std::optional<Sense> sense_of(const model::Step& step) {
-  if (!step.moves.empty() || !step.release.empty() || !step.connect.empty() ||
+  if (step.is_any_order || !step.moves.empty() || !step.release.empty() || !step.connect.empty() ||
       step.attach.empty() == step.detach.empty()) {
     return std::nullopt;
   }

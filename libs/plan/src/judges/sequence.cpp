@@ -187,7 +187,9 @@ class Run {
         // Chunks begin afresh, so that nothing depends on who does which.
         const bool is_first = (i - begin) % kChunk == 0;
         judge_one(*judge, i, robot, transition,
-                  is_first ? nullptr : &judged_[i - 1].stages[kStageCount - 1]);
+                  // Behind a step in any order it is that of all parts of it.
+                  is_first || steps_[i - 1].is_any_order ? nullptr
+                                                         : &judged_[i - 1].stages[kStageCount - 1]);
       }
       apply(steps_[i], transition, robot);
     }

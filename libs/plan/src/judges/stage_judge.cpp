@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "judges/core_assessment.hpp"
+#include "judges/stage_parts.hpp"
 
 namespace holdfast::plan {
 namespace {
@@ -17,17 +18,6 @@ using verdict::Verdict;
 
 /// Larger robots are left to multigrid.
 constexpr std::size_t kCoreCountMax = 2000;
-
-/// Whether `b` is worse than `a`: by verdict, then by margin if they topple, else by load.
-bool is_worse(const Judgement& a, const Judgement& b) {
-  constexpr double kNone = std::numeric_limits<double>::infinity();
-  if (a.verdict != b.verdict) {
-    return verdict::severity(b.verdict) > verdict::severity(a.verdict);
-  }
-  return a.verdict == Verdict::kUnstable
-             ? b.margin_mm.value_or(kNone) < a.margin_mm.value_or(kNone)
-             : b.load_ratio_max.value_or(-kNone) > a.load_ratio_max.value_or(-kNone);
-}
 
 /// Takes over what is worse in `next`, and the extremes of both.
 void add(StageJudgement& stage, StageJudgement next) {
@@ -89,6 +79,16 @@ bool is_same(const model::RobotSpec& a, const model::RobotSpec& b) {
 }
 
 }  // namespace
+
+bool is_worse(const Judgement& a, const Judgement& b) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  if (a.verdict != b.verdict) {
+    return verdict::severity(b.verdict) > verdict::severity(a.verdict);
+  }
+  return a.verdict == Verdict::kUnstable
+             ? b.margin_mm.value_or(kNone) < a.margin_mm.value_or(kNone)
+             : b.load_ratio_max.value_or(-kNone) > a.load_ratio_max.value_or(-kNone);
+}
 
 bool is_unsafe(Verdict verdict) {
   return verdict::severity(verdict) >= verdict::severity(Verdict::kOverload);
@@ -233,7 +233,36 @@ base::Result<StepJudgement> StageJudge::judge(const RobotState& before, const mo
     here = std::move(found).value();
     known = &here;
   }
-  return judged;
+  const bool has_parts = step.is_any_order && step.attach.size() + step.detach.size() > 1;
+  const auto error = has_parts ? add_parts(before, step, judged) : std::nullopt;
+  return error ? base::Result<StepJudgement>(*error) : judged;
+}
+
+std::optional<base::Error> StageJudge::add_parts(const RobotState& before, const model::Step& step,
+                                                 StepJudgement& judged) {
+  const Stage stage = stage_of_parts(step);
+  const auto parts = judge_parts(
+      before, step, options_, [&](const model::Step& part) -> base::Result<StageJudgement> {
+        const auto transition = find_transition(before, part);
+        return transition ? judge_stage(before, part, transition.value(), stage)
+                          : transition.error();
+      });
+  if (!parts) {
+    return parts.error();
+  }
+  StageJudgement& all = judged.stages[static_cast<std::size_t>(stage)];
+  if (!parts.value().is_bound) {
+    add(all, parts.value());
+    return std::nullopt;
+  }
+  all.is_bound = all.is_safe();  // What breaks does so by load ratios that are known.
+  if (all.is_bound) {
+    all.load_ratio_max = larger(all.load_ratio_max, parts.value().load_ratio_max);
+    all.load_ratio_high = all.load_ratio_max;
+    all.worst.reset();
+  }
+  all.margin_mm = smaller(all.margin_mm, parts.value().margin_mm);
+  return std::nullopt;
 }
 
 }  // namespace holdfast::plan

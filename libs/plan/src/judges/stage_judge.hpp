@@ -13,6 +13,9 @@ namespace holdfast::plan {
 /// Whether a verdict is overload or unstable.
 bool is_unsafe(verdict::Verdict verdict);
 
+/// Whether `b` is worse than `a`: by verdict, then by margin if they topple, else by load.
+bool is_worse(const Judgement& a, const Judgement& b);
+
 /// What a stage is if it is this robot alone.
 StageJudgement stage_judgement_of(const model::Robot& robot, const verdict::Assessment& assessment);
 
@@ -41,6 +44,9 @@ class StageJudge {
                                            const Transition& transition, Stage stage);
 
  private:
+  /// Adds what the parts of a step in any order come to.
+  std::optional<base::Error> add_parts(const RobotState& before, const model::Step& step,
+                                       StepJudgement& judged);
   base::Result<StageJudgement> judge_scene(const Scene& scene);
   base::Result<StageJudgement> judge_piece(const model::RobotSpec& spec);
   std::optional<verdict::Assessment> assess_by_core(const model::Robot& robot);

@@ -9,6 +9,7 @@
 #include <unordered_set>
 
 #include "bounds/robot_growth.hpp"
+#include "orders/time_steps.hpp"
 #include "part_of.hpp"
 #include "patience.hpp"
 
@@ -180,6 +181,11 @@ struct Setting {
 };
 
 base::Result<Setting> make_setting(const OrderTask& task, int thread_count) {
+  if (task.parallel_max == 0 || (task.parallel_max > 1 && task.group_size > 1)) {
+    return base::bad_input(
+        "modules come in any order, up to one number of them at a time, or several at the same "
+        "instant: expected at least one module at a time, and no groups beside several");
+  }
   if (!task.target.planned.empty()) {
     return base::bad_input("the target has planned modules: all of an order's modules exist in it");
   }
@@ -293,7 +299,14 @@ base::Result<RobotOrder> find_robot_order(const OrderTask& task, const RobotOrde
                              .is_interrupted = options.is_interrupted,
                              .told_end = options.told_end,
                              .progress = options.progress});
-  if (options.is_exact) {
+  const bool is_parallel = task.parallel_max > 1;
+  if (is_parallel && result.order.outcome == OrderOutcome::kFound) {
+    TimeSteps steps(task, made.target, options, patience);
+    steps.replace(result.order);
+    result.load_ratio_max = steps.solved_ratio();
+    result.step_count_least = step_count_least(made.target, result.order.start, task.parallel_max);
+  }
+  if (options.is_exact && !is_parallel) {
     CertifiedStates(growth, result.order, patience).solve([&](std::size_t module_count) {
       if (options.progress) {
         options.progress(result.order.state_count, module_count, module_count);

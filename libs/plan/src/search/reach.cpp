@@ -111,25 +111,26 @@ bool ReachFinder::has_line(const ElementSet& state, const Cell& cell) const {
   return false;
 }
 
-void ReachFinder::for_each_move(const ElementSet& state, const Cell& cell,
+void ReachFinder::for_each_move(const ElementSet& carrying, const ElementSet& barring,
+                                const Cell& cell,
                                 const std::function<void(const Cell&)>& take) const {
   for (const base::Direction side : base::directions(lattice_)) {
     const Cell carrier = base::neighbour(lattice_, cell, side);
-    if (!is_module(state, carrier)) {
+    if (!is_module(carrying, carrier)) {
       continue;
     }
     for (const base::Direction way : base::directions(lattice_)) {
       const Cell next = base::neighbour(lattice_, cell, way);
-      if (!is_free(state, next)) {
+      if (!is_free(carrying, next)) {
         continue;
       }
-      bool is_carried = is_module(state, base::neighbour(lattice_, carrier, way));
+      bool is_carried = is_module(carrying, base::neighbour(lattice_, carrier, way));
       for (const base::Direction beside : base::directions(lattice_)) {
         const Cell turned = base::neighbour(lattice_, next, beside);
         is_carried = is_carried || turned == carrier;
         for (const base::Direction back : base::directions(lattice_)) {
           if (turned != cell && base::neighbour(lattice_, turned, back) == carrier &&
-              is_free(state, turned)) {
+              is_free(barring, next) && is_free(carrying, turned)) {
             take(turned);
           }
         }
@@ -141,16 +142,22 @@ void ReachFinder::for_each_move(const ElementSet& state, const Cell& cell,
   }
 }
 
-std::vector<Cell> ReachFinder::surface(const ElementSet& state) const {
+/// The cells that modules can get to, carried by some modules and barred by more: those of the
+/// latter alone may be entered, and are not gone on from.
+std::vector<Cell> ReachFinder::surface(const ElementSet& carrying,
+                                       const ElementSet& barring) const {
   std::vector<Cell> reached;
-  if (!rule_.source || !is_free(state, *rule_.source) || !is_beside(state, *rule_.source)) {
+  if (!rule_.source || !is_free(carrying, *rule_.source) || !is_beside(carrying, *rule_.source)) {
     return reached;
   }
   std::set<Cell> seen = {*rule_.source};
   reached.push_back(*rule_.source);
   for (std::size_t i = 0; i < reached.size(); ++i) {
     const Cell cell = reached[i];
-    for_each_move(state, cell, [&](const Cell& next) {
+    if (!is_free(barring, cell)) {
+      continue;
+    }
+    for_each_move(carrying, barring, cell, [&](const Cell& next) {
       if (seen.insert(next).second) {
         reached.push_back(next);
       }
@@ -171,12 +178,31 @@ std::vector<bool> ReachFinder::can_reach_each(const ElementSet& state,
     return can;
   }
   const std::vector<Cell> reached =
-      rule_.reach == Reach::kSurface ? surface(state) : std::vector<Cell>{};
+      rule_.reach == Reach::kSurface ? surface(state, state) : std::vector<Cell>{};
   for (std::size_t i = 0; i < cells.size(); ++i) {
     can[i] = rule_.reach == Reach::kSurface ? std::ranges::binary_search(reached, cells[i])
                                             : has_line(state, cells[i]);
   }
   return can;
+}
+
+bool ReachFinder::can_reach_in_any_order(const ElementSet& state,
+                                         const std::vector<Cell>& cells) const {
+  if (rule_.reach == Reach::kFree || cells.size() < 2) {
+    return rule_.reach == Reach::kFree || cells.empty() || can_reach(state, cells.front());
+  }
+  ElementSet all = state;
+  std::ranges::for_each(cells, [&](const Cell& cell) { all.insert(modules_.find(cell)); });
+  if (rule_.reach == Reach::kSurface) {
+    const std::vector<Cell> reached = surface(state, all);
+    return std::ranges::all_of(
+        cells, [&](const Cell& cell) { return std::ranges::binary_search(reached, cell); });
+  }
+  return std::ranges::all_of(cells, [&](const Cell& cell) {
+    ElementSet others = all;
+    others.erase(modules_.find(cell));
+    return has_line(others, cell);
+  });
 }
 
 }  // namespace holdfast::plan

@@ -32,6 +32,9 @@ struct Step {
   std::vector<OwnKind> own_kinds = {};   ///< Of attached modules; all others are of kind 0.
   std::vector<OwnMass> own_masses = {};  ///< All others weigh what their kind does.
   std::vector<Payload> payloads = {};    ///< On attached modules.
+  /// The modules come one by one, or go, nobody knows in which order: whatever part of them has
+  /// come or gone, the robot has to be safe. Of steps that only attach, or only detach.
+  bool is_any_order = false;
 
   friend bool operator==(const Step&, const Step&) = default;
 };

@@ -26,6 +26,10 @@ struct OrderTask {
   std::vector<base::Cell> start = {};
   ReachRule rule = {};
   std::size_t group_size = 1;
+  /// The most modules that one step attaches in any order: whatever part of them has come the robot
+  /// is safe, and each touches, and gets to its cell along, what was there before the step. More
+  /// than 1 only with groups of one.
+  std::size_t parallel_max = 1;
 };
 
 struct RobotOrderOptions {
@@ -60,6 +64,9 @@ struct RobotOrder {
   std::optional<double> load_ratio_bound = {};
   /// The smallest margin on the way; none where none is known.
   std::optional<double> margin_min_mm = {};
+  /// Where several modules come at a time: no schedule from this start has fewer steps, as each
+  /// takes as many modules at most, and each module touches one that was there before.
+  std::optional<std::size_t> step_count_least = {};
 };
 
 /// The place of an error that is the start's and not the target's.

@@ -105,6 +105,9 @@ struct Order {
   std::vector<Batch> steps = {};           ///< From there to the whole.
   std::vector<Judgement> judgements = {};  ///< Of that and of the state after each step; all safe.
   std::size_t state_count = 0;             ///< Judged in all.
+  /// Whether the elements of a step come in any order, so that all parts of it are judged; else
+  /// they come at the same instant.
+  bool is_any_order = false;
   /// The number of undecided states if, of kNotFound before time ran out, they are all that could
   /// be entered next, so that nothing is proved.
   std::size_t undecided_count = 0;

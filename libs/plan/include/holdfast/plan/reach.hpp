@@ -59,15 +59,19 @@ class ReachFinder {
   std::vector<bool> can_reach_each(const ElementSet& state,
                                    const std::vector<base::Cell>& cells) const;
 
+  /// Whether modules can get to all of these cells, of the target, in whatever order they come:
+  /// each has a way that no other of them bars or carries.
+  bool can_reach_in_any_order(const ElementSet& state, const std::vector<base::Cell>& cells) const;
+
  private:
   bool is_module(const ElementSet& state, const base::Cell& cell) const;
   bool is_free(const ElementSet& state, const base::Cell& cell) const;
   bool is_beside(const ElementSet& state, const base::Cell& cell) const;
   bool is_far(const base::Cell& cell) const;
   bool has_line(const ElementSet& state, const base::Cell& cell) const;
-  void for_each_move(const ElementSet& state, const base::Cell& cell,
+  void for_each_move(const ElementSet& carrying, const ElementSet& barring, const base::Cell& cell,
                      const std::function<void(const base::Cell&)>& take) const;
-  std::vector<base::Cell> surface(const ElementSet& state) const;
+  std::vector<base::Cell> surface(const ElementSet& carrying, const ElementSet& barring) const;
 
   base::Lattice lattice_;
   std::optional<std::int32_t> floor_z_;  ///< None if it bars nothing.

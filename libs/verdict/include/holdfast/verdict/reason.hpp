@@ -73,9 +73,11 @@ enum class ReasonCode : std::uint8_t {
   /// buckling factor or 0, the largest load ratio, the same to second order; and 0 where the
   /// elastic modulus is stated, else that which would be needed, MPa, or -1 if that is not known.
   kBendingMatters,
+  kPartHasCome,    ///< A step in any order, when so many are there: how many, of how many.
+  kPartsNotKnown,  ///< A step in any order of so many modules: too many parts to check each.
 };
 
-inline constexpr int kReasonCodeCount = static_cast<int>(ReasonCode::kBendingMatters) + 1;
+inline constexpr int kReasonCodeCount = static_cast<int>(ReasonCode::kPartsNotKnown) + 1;
 
 /// Why linear theory does not suffice for a verdict.
 enum class SecondOrderDoubt : std::uint8_t {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "judges/robot_symmetry.hpp"
+#include "search/robot_symmetry.hpp"
 
 #include <algorithm>
 
