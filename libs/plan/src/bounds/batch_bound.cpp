@@ -135,8 +135,8 @@ std::vector<PointLoad> BatchBound::loads_of(const Footprint& print) {
     const Vec u = bound_.follow(module, moved);
     for (std::size_t i = 0; i < first.size(); ++i) {
       const auto direction =
-          direction_between(target_.lattice(), target_.modules()[first[i].module].cell,
-                            target_.modules()[module].cell)
+          model::direction_between(target_.lattice(), target_.modules()[first[i].module].cell,
+                                   target_.modules()[module].cell)
               .value();
       const Vec force = bound_.beam().end_force(direction, moved(first[i].module), u);
       for (std::size_t k = 0; k < 6; ++k) {
