@@ -437,11 +437,12 @@ WORDS = [((506, 39), 'a module is fixed', INK), ((690, 21), 'topples', INK),
 NOTES = ['Green: iterations, one sweep each.', 'Law 2: the unilateral one, Eqs. (6)-(8).',
          'Settled: of a robot with a fixed module, loads comes next; behind free, the verdict.',
          'Stuck: begin without clusters if there were any, else with the next method or law.',
+         'Before a verdict that is safe: bend, where the elastic modulus is stated.',
          'From every state: verdict, undecided, with the reason.']
 
 
 def conductor():
-    canvas = Canvas(780, 645, 'What the root orders next')
+    canvas = Canvas(780, 662, 'What the root orders next')
     for points in EDGES:
         canvas.arrow(*points, width=1.3)
     for points in RED_EDGES:
