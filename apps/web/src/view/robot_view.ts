@@ -150,7 +150,6 @@ export class RobotView {
     this.placeMotions();
     this.modules.update(drawn.length, 'place', 'faces', 'motion', 'turn');
     this.paint();
-    this.markWorst();
   }
 
   /** Colours and patterns of all modules. */

@@ -1,34 +1,16 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include <cmath>
 #include <map>
 #include <utility>
 
 #include "holdfast/falling_pieces.hpp"
+#include "holdfast/mechanics/large_beam.hpp"
 #include "series/series_files.hpp"
 
 namespace holdfast {
 namespace {
 
 using base::at;
-
-/// The rotation vector of a unit quaternion, half a turn at most.
-fall::Point rotation_vector(const std::array<double, 4>& turn) {
-  const double sine = std::sqrt(turn[1] * turn[1] + turn[2] * turn[2] + turn[3] * turn[3]);
-  const double sign = turn[0] < 0 ? -1 : 1;
-  const double angle = 2 * std::atan2(sine, sign * turn[0]);
-  const double scale = sine == 0 ? 0 : sign * angle / sine;
-  return {scale * turn[1], scale * turn[2], scale * turn[3]};
-}
-
-/// A vector turned by a unit quaternion.
-fall::Point turned_by(const std::array<double, 4>& turn, const fall::Point& r) {
-  const auto& [w, x, y, z] = turn;
-  const fall::Point t = {2 * (y * r[2] - z * r[1]), 2 * (z * r[0] - x * r[2]),
-                         2 * (x * r[1] - y * r[0])};
-  return {r[0] + w * t[0] + y * t[2] - z * t[1], r[1] + w * t[1] + z * t[0] - x * t[2],
-          r[2] + w * t[2] + x * t[1] - y * t[0]};
-}
 
 /// The frames of a fall as assessments without loads, whose displacements are where bodies are.
 class FallFrames {
@@ -77,8 +59,8 @@ class FallFrames {
     for (std::size_t k = 0; k < 3; ++k) {
       r[k] = r[k] * robot_.material().pitch_mm - centre[k];
     }
-    const fall::Point there = turned_by(pose.turn, r);
-    const fall::Point rotation = rotation_vector(pose.turn);
+    const fall::Point there = mechanics::rotated(pose.turn, r);
+    const fall::Point rotation = mechanics::rotation_vector(pose.turn);
     return {pose.moved[0] + there[0] - r[0],
             pose.moved[1] + there[1] - r[1],
             pose.moved[2] + there[2] - r[2],

@@ -8,6 +8,7 @@
 
 #include "bounds/robot_growth.hpp"
 #include "judges/stage_judge.hpp"
+#include "search/layers.hpp"
 
 namespace holdfast::plan {
 namespace {
@@ -41,24 +42,16 @@ constexpr std::size_t kStepsPerMark = 24;
 constexpr std::size_t kWindowOfWays = 8;
 
 /// Steps from a state to every module through connections.
-std::vector<int> steps_from(const model::Robot& target, const ElementSet& start) {
-  std::vector<int> distance(target.modules().size(), -1);
-  std::vector<Element> queue = start.elements();
-  std::ranges::for_each(queue, [&](Element element) { distance[base::at(element)] = 0; });
-  for (std::size_t i = 0; i < queue.size(); ++i) {
-    for (const std::int32_t other : target.connected()[base::at(queue[i])]) {
-      if (other != model::Robot::kNoNeighbour && distance[base::at(other)] < 0) {
-        distance[base::at(other)] = distance[base::at(queue[i])] + 1;
-        queue.push_back(other);
-      }
-    }
-  }
-  return distance;
+std::vector<std::int64_t> steps_from(const model::Robot& target, const ElementSet& start) {
+  std::vector<std::size_t> sources;
+  std::ranges::transform(start.elements(), std::back_inserter(sources),
+                         [](Element element) { return base::at(element); });
+  return distances_from(target, std::move(sources));
 }
 
 /// How many others at most come one after another behind each module on shortest chains.
 std::vector<int> waiting_chains(const model::Robot& target, const ElementSet& start) {
-  const std::vector<int> distance = steps_from(target, start);
+  const std::vector<std::int64_t> distance = steps_from(target, start);
   std::vector<Element> farthest_first;
   for (std::size_t i = 0; i < distance.size(); ++i) {
     farthest_first.push_back(static_cast<Element>(i));
@@ -100,9 +93,10 @@ Judgement both_of(const Judgement& a, const Judgement& b) {
 std::size_t step_count_least(const model::Robot& target, const ElementSet& start,
                              std::size_t parallel_max) {
   const std::size_t count = target.modules().size() - start.size();
-  const std::vector<int> distance = steps_from(target, start);
-  const int farthest = *std::ranges::max_element(distance);
-  return std::max(base::at(farthest), count / parallel_max + (count % parallel_max == 0 ? 0 : 1));
+  const std::vector<std::int64_t> distance = steps_from(target, start);
+  const std::int64_t farthest = *std::ranges::max_element(distance);
+  return std::max(static_cast<std::size_t>(farthest),
+                  count / parallel_max + (count % parallel_max == 0 ? 0 : 1));
 }
 
 TimeSteps::TimeSteps(const OrderTask& task, const model::Robot& target,

@@ -33,25 +33,6 @@ struct Offset {
 
 double in_ties(double square) { return std::round(square / kTie); }
 
-/// Steps from the nearest of `sources`.
-std::vector<std::int64_t> distances_from(const model::Robot& robot,
-                                         std::vector<std::size_t> sources) {
-  std::vector<std::int64_t> distance(robot.modules().size(),
-                                     std::numeric_limits<std::int32_t>::max());
-  for (const std::size_t source : sources) {
-    distance[source] = 0;
-  }
-  for (std::size_t i = 0; i < sources.size(); ++i) {
-    for (const std::int32_t other : robot.connected()[sources[i]]) {
-      if (other != model::Robot::kNoNeighbour && distance[at(other)] > distance[sources[i]] + 1) {
-        distance[at(other)] = distance[sources[i]] + 1;
-        sources.push_back(at(other));
-      }
-    }
-  }
-  return distance;
-}
-
 /// The offsets of a layer's modules, in its order.
 std::vector<Offset> offsets_from_middle(const model::Robot& robot,
                                         const std::vector<std::size_t>& layer) {
@@ -93,6 +74,24 @@ std::vector<std::size_t> balanced(const std::vector<Offset>& offsets) {
 }
 
 }  // namespace
+
+std::vector<std::int64_t> distances_from(const model::Robot& robot,
+                                         std::vector<std::size_t> sources) {
+  std::vector<std::int64_t> distance(robot.modules().size(),
+                                     std::numeric_limits<std::int32_t>::max());
+  for (const std::size_t source : sources) {
+    distance[source] = 0;
+  }
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    for (const std::int32_t other : robot.connected()[sources[i]]) {
+      if (other != model::Robot::kNoNeighbour && distance[at(other)] > distance[sources[i]] + 1) {
+        distance[at(other)] = distance[sources[i]] + 1;
+        sources.push_back(at(other));
+      }
+    }
+  }
+  return distance;
+}
 
 std::vector<LayerPlace> places_in_layers(const model::Robot& robot,
                                          std::vector<std::size_t> sources) {
