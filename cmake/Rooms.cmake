@@ -70,7 +70,7 @@ endfunction()
 
 # Tests take longer to compile than what they test, so they are optimised less, and the headers that
 # all of them include are compiled once. A compiler's launcher, ccache, knows the files one by one
-# and does without. That each test includes what it needs is checked by ./dev lint.
+# and does without, so that it also finds a test that includes too little.
 function(holdfast_test_quickly_compiled target level)
   target_compile_options(${target} PRIVATE ${level})
   if(CMAKE_CXX_COMPILER_LAUNCHER)

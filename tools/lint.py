@@ -30,13 +30,19 @@ def git(root, *arguments):
                           check=True).stdout
 
 
-def groups(root, build):
-    """Translation unit -> the sources of the repository in it, of all that are no tests."""
+def commands(build):
+    """The compile commands of all that are no tests. A test that compiles a library's source again
+    reads headers precompiled by GCC, which clang cannot."""
+    return [entry for entry in json.loads((build / 'compile_commands.json').read_text())
+            if 'verify_interface_header_sets' not in entry['file']
+            and '_test.dir' not in entry['command']]
+
+
+def groups(root, build, entries):
+    """Translation unit -> the sources of the repository in it."""
     found = {}
-    for entry in json.loads((build / 'compile_commands.json').read_text()):
+    for entry in entries:
         unit = pathlib.Path(entry['file'])
-        if 'verify_interface_header_sets' in str(unit) or '_test.dir' in str(unit):
-            continue
         sources = [unit]
         if unit.is_relative_to(build):
             sources = [pathlib.Path(name)
@@ -64,12 +70,12 @@ def is_changed(names, changed):
     return any(name in changed or room(name) in headers for name in names)
 
 
-def findings_of(unit, build, root, analyze):
+def findings_of(unit, database, root, analyze):
     without = WITHOUT if analyze else WITHOUT + ',-clang-analyzer-*'
-    run = subprocess.run(['clang-tidy', '-quiet', f'-checks={without}', '-p', build,
+    run = subprocess.run(['clang-tidy', '-quiet', f'-checks={without}', '-p', database,
                           '-extra-arg=-Wno-unknown-warning-option', unit], cwd=root,
                          capture_output=True, text=True, check=False)
-    found = re.findall(r'^(/.*: (?:error|warning): .*)$', run.stdout, re.M)
+    found = re.findall(r'^((?:/.*: )?(?:error|warning): .*)$', run.stdout, re.M)
     if run.returncode != 0 and not found:
         found = [f'{unit}: clang-tidy exits {run.returncode}: {run.stderr.strip()[-400:]}']
     return {line.removeprefix(f'{root}/') for line in found}
@@ -83,13 +89,17 @@ def main():
     options = parser.parse_args()
     root = pathlib.Path(__file__).resolve().parent.parent
     build = options.build.resolve()
-    units = groups(root, build)
+    entries = commands(build)
+    units = groups(root, build, entries)
     changed = changed_since(root, options.since) if options.since else None
     chosen = [unit for unit, names in units.items()
               if changed is None or is_changed(names, changed)]
     print(f'clang-tidy: {len(chosen)} of {len(units)} groups of sources', flush=True)
+    database = build / 'lint'
+    database.mkdir(exist_ok=True)
+    (database / 'compile_commands.json').write_text(json.dumps(entries))
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        lists = pool.map(lambda unit: findings_of(unit, build, root, options.analyze), chosen)
+        lists = pool.map(lambda unit: findings_of(unit, database, root, options.analyze), chosen)
         found = sorted(set().union(*lists))
     print('\n'.join(found) if found else 'clang-tidy: nothing found')
     sys.exit(1 if found else 0)
