@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Optional, Union
 
@@ -45,14 +46,16 @@ def next_places(robot: Union[Robot, Path], *, threads: int = 0, memory: float = 
 
 def steps(robot: Union[Robot, Path], plan: Optional[Sequence[Mapping[str, Any]]] = None, *,
           threads: int = 0, memory: float = 4, ends_when_unsafe: bool = False,
-          exact: bool = False, safety_factor: Optional[float] = None,
-          progress: Progress = None, **questions: Unpack[PlanQuestions]) -> Steps:
+          exact: bool = False, motions: Union[Path, None] = None,
+          safety_factor: Optional[float] = None, progress: Progress = None,
+          **questions: Unpack[PlanQuestions]) -> Steps:
     """Is every stage of every step safe?
 
     `plan` is a list of steps as in holdfast JSON, ``[{'attach': [...]}, {'move': [{'from': ...,
     'to': ...}]}]``; without it the robot's own steps are judged. `progress` is called with (steps
     judged, of how many). `exact` solves every stage, also of robots of more than 256 modules: of
     these most stages of steps that only attach, or only detach, are certified by a bound.
+    `motions`, as of `move`, are those that every move must be one of.
     `safety_factor`: as of `Robot.check`. With `PlanQuestions` every stage is also asked how sure it
     is (`Steps.reliability`), and what follows if a part is lost (`Steps.lose_one`).
 
@@ -70,7 +73,7 @@ def steps(robot: Union[Robot, Path], plan: Optional[Sequence[Mapping[str, Any]]]
     with told(progress, 'steps', is_counted=True) as tell:
         judged: Steps = Steps._of(
             _core.steps(start._held, threads, memory, ends_when_unsafe, exact,
-                        asked_of('steps', questions), tell))
+                        os.fsdecode(motions or ''), asked_of('steps', questions), tell))
     judged.robot = start
     return judged
 
@@ -128,12 +131,14 @@ def order(target: Union[Robot, Path], *, start: Optional[Cells] = None, reach: s
 
 
 def move(start: Union[Robot, Path], target: Union[Robot, Path], *, pivots: bool = False,
-         within: Optional[Cells] = None, ignores_mechanics: bool = False, seed: int = 0,
-         seconds: float = 300, threads: int = 0, safety_factor: Optional[float] = None,
-         progress: Progress = None, **questions: Unpack[PlanQuestions]) -> Moves:
+         motions: Union[Path, None] = None, within: Optional[Cells] = None,
+         ignores_mechanics: bool = False, seed: int = 0, seconds: float = 300, threads: int = 0,
+         safety_factor: Optional[float] = None, progress: Progress = None,
+         **questions: Unpack[PlanQuestions]) -> Moves:
     """How does a robot get from one shape to another, module by module?
 
-    `pivots`: modules are cubes that turn about edges. `within`: two cells, the corners of a box
+    `motions`: those that a module has, ``'pivoting'`` (cubes that turn about edges; `pivots` says
+    the same), ``'catoms3D'``, or a file. `within`: two cells, the corners of a box
     that modules stay in. `safety_factor`: as of `Robot.check`. `progress` is called with (moves
     judged, moves to the target at least). `PlanQuestions` are asked of the plan that is found:
     `Moves.reliability` and `Moves.lose_one`.
@@ -142,9 +147,12 @@ def move(start: Union[Robot, Path], target: Union[Robot, Path], *, pivots: bool 
     >>> move(row, Robot([[0, 0, 0], [1, 0, 0], [1, 0, 1]]))
     <holdfast.Moves found: 1 step>
     """
+    if pivots and motions is not None:
+        raise ValueError('pivots and motions: expected one of them')
+    ways = 'pivoting' if pivots else os.fsdecode(motions or '')
     with told(progress, 'move') as tell:
         found: Moves = Moves._of(_core.move(_robot(start)._asked(safety_factor),
-                                            _robot(target)._asked(safety_factor), pivots,
+                                            _robot(target)._asked(safety_factor), ways,
                                             within, ignores_mechanics, seed, seconds, threads,
                                             asked_of('move', questions), tell))
     return found

@@ -155,25 +155,28 @@ py::dict remedies(const SharedCheck& check, const py::handle& threads, const py:
 
 std::shared_ptr<JudgedSteps> steps(const SharedStructure& structure, const py::handle& threads,
                                    const py::handle& memory, bool ends_when_unsafe, bool is_exact,
-                                   const py::dict& asked, py::object progress) {
+                                   const std::string& motions, const py::dict& asked,
+                                   py::object progress) {
   const CheckOptions check = check_options(threads, memory, false);
   const std::size_t count = io::step_count(structure->document);
   if (count == 0) {
     throw Error("the structure has no steps; check() judges it as it is");
   }
   Watch watch(std::move(progress));
-  const StepsOptions options{
-      .thread_count = check.thread_count,
-      .memory_bytes_max = check.memory_bytes_max,
-      .ends_when_unsafe = ends_when_unsafe,
-      .is_exact = is_exact,
-      .progress = [&](std::size_t judged_count) { watch(judged_count, count); }};
+  StepsOptions options{.thread_count = check.thread_count,
+                       .memory_bytes_max = check.memory_bytes_max,
+                       .ends_when_unsafe = ends_when_unsafe,
+                       .is_exact = is_exact,
+                       .progress = [&](std::size_t judged_count) { watch(judged_count, count); }};
   auto judged = std::make_shared<JudgedSteps>(StepsFile{.name = structure->name,
                                                         .document = structure->document,
                                                         .warnings = {},
                                                         .origin = structure->origin},
                                               StepsResult{});
   const PlanFailuresWish wish = plan_failures_wish(asked, check);
+  if (!motions.empty()) {
+    options.motions = take(find_motions(motions));
+  }
   judged->result = take(without_gil(watch, [&] { return judge_steps(judged->file, options); }));
   judged->failures =
       take(without_gil(watch, [&] { return report_plan_failures(judged->file.document, wish); }));
@@ -326,17 +329,19 @@ py::object order_help(const FoundOrder& report) {
   return out;
 }
 
-std::shared_ptr<FoundMoves> move(const Structure& start, const Structure& target, bool pivots,
-                                 const py::handle& within, bool ignores_mechanics,
-                                 const py::handle& seed, const py::handle& seconds,
-                                 const py::handle& threads, const py::dict& asked,
-                                 py::object progress) {
+std::shared_ptr<FoundMoves> move(const Structure& start, const Structure& target,
+                                 const std::string& motions, const py::handle& within,
+                                 bool ignores_mechanics, const py::handle& seed,
+                                 const py::handle& seconds, const py::handle& threads,
+                                 const py::dict& asked, py::object progress) {
   Watch watch(std::move(progress));
-  MoveRequest request{.pivots = pivots,
-                      .ignores_mechanics = ignores_mechanics,
+  MoveRequest request{.ignores_mechanics = ignores_mechanics,
                       .seed = seed_of(seed),
                       .seconds_max = seconds_of(seconds, "seconds"),
                       .thread_count = thread_count_of(threads)};
+  if (!motions.empty()) {
+    request.motions = take(find_motions(motions));
+  }
   if (!within.is_none()) {
     const auto corners = cells_of(within, "within");
     if (corners.size() != 2) {

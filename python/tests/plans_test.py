@@ -132,6 +132,27 @@ def test_moves_are_safe_steps(root):
         holdfast.move(start, target, within=[[0, 0, 0]])
 
 
+def test_moves_have_the_motions_that_are_given(root, tmp_path):
+    plan = root / 'scenarios/plan'
+    ends = [plan / f'around_arm_{end}.json' for end in ('from', 'to')]
+    box = [[-9, 0, -9], [9, 0, 9]]
+    pivoting = holdfast.move(*ends, motions='pivoting', within=box)
+    assert pivoting.steps == holdfast.move(*ends, pivots=True, within=box).steps
+    robot = pivoting.robot()
+    assert holdfast.steps(robot, motions='pivoting').verdict is Verdict.SAFE
+    slides = tmp_path / 'slides.json'
+    slides.write_text('{"format": "holdfast-motions", "version": 1, "name": "slides", "motions": '
+                      '[{"to": [1, 0, 0], "modules": [[0, 0, -1], [1, 0, -1]]}]}')
+    with pytest.raises(holdfast.Error, match='no motion leads from'):
+        holdfast.steps(robot, motions=slides)
+    with pytest.raises(holdfast.Error, match='another lattice'):
+        holdfast.move(*ends, motions='catoms3D')
+    with pytest.raises(FileNotFoundError):
+        holdfast.move(*ends, motions=tmp_path / 'none.json')
+    with pytest.raises(ValueError, match='expected one of them'):
+        holdfast.move(*ends, pivots=True, motions=slides)
+
+
 def test_the_robot_finds_the_exact_verdict_itself(root):
     for name in ('arm_breaks_a', 'arm_breaks_b', 'crane_tips_b'):
         robot = holdfast.load(root / f'scenarios/{name}.json')

@@ -64,8 +64,9 @@ _holdfast() {
         --step) words="start" ;;
         --html) files=1 ;;
         --vtk) files=1 ;;
+        --motions) : ;;
         --threads) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --json --csv --svg --size --title --grey --view --no-legend --step --strip --html --vtk --until-unsafe --exact --verify -q --quiet --threads"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --json --csv --svg --size --title --grey --view --no-legend --step --strip --html --vtk --until-unsafe --exact --motions --verify -q --quiet --threads"; else files=1; fi ;;
       esac
       ;;
     next)
@@ -132,6 +133,7 @@ _holdfast() {
       ;;
     move)
       case $previous in
+        --motions) : ;;
         --within) : ;;
         --seed) : ;;
         --seconds) : ;;
@@ -154,7 +156,7 @@ _holdfast() {
         --support-z) : ;;
         --pitch) : ;;
         --safety-factor|--margin) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --pivot --within --geometry-only --seed --seconds --threads -q --quiet -o --output --json --csv --html --verify --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --pivot --motions --within --geometry-only --seed --seconds --threads -q --quiet -o --output --json --csv --html --verify --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin"; else files=1; fi ;;
       esac
       ;;
     simulate)

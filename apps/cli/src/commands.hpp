@@ -84,6 +84,11 @@ inline CLI::Option& add_output(CLI::App& command, const std::string& name, std::
 }
 
 /// The option --threads.
+/// The option for motions as data, of find_motions().
+inline CLI::Option& add_motions(CLI::App& command, std::string& motions, const std::string& help) {
+  return *command.add_option("--motions", motions, help)->type_name("NAME|FILE");
+}
+
 inline void add_threads(CLI::App& command, int& thread_count) {
   command
       .add_option("--threads", thread_count,

@@ -24,6 +24,7 @@ struct MoveArguments {
   std::string start;
   std::string target;
   bool pivots = false;
+  std::string motions;
   bool ignores_mechanics = false;
   std::string within;
   std::uint64_t seed = 0;
@@ -133,13 +134,19 @@ base::Result<io::Document> read(const std::string& file, std::string_view which,
   return std::move(found).value().document;
 }
 
-MoveRequest request_of(const MoveArguments& options, Progress& progress) {
-  MoveRequest request{.pivots = options.pivots,
-                      .ignores_mechanics = options.ignores_mechanics,
+base::Result<MoveRequest> request_of(const MoveArguments& options, Progress& progress) {
+  MoveRequest request{.ignores_mechanics = options.ignores_mechanics,
                       .seed = options.seed,
                       .seconds_max = options.seconds,
                       .thread_count = options.thread_count,
                       .is_interrupted = &Interruption::is_here};
+  if (options.pivots || !options.motions.empty()) {
+    auto motions = find_motions(options.pivots ? "pivoting" : options.motions);
+    if (!motions) {
+      return motions.error();
+    }
+    request.motions = std::move(motions).value();
+  }
   if (!options.within.empty()) {
     request.within = box_of(options.within);
   }
@@ -154,7 +161,7 @@ MoveRequest request_of(const MoveArguments& options, Progress& progress) {
 
 int run(const MoveArguments& options) {
   std::vector<std::string> inputs = {options.start};
-  for (const std::string& more : {options.target, options.verified}) {
+  for (const std::string& more : {options.target, options.verified, options.motions}) {
     if (!more.empty()) {
       inputs.push_back(more);
     }
@@ -170,7 +177,11 @@ int run(const MoveArguments& options) {
     return fail(target.error(), target_file(options));
   }
   Progress progress(options.is_quiet);
-  const MoveRequest request = request_of(options, progress);
+  const auto asked = request_of(options, progress);
+  if (!asked) {
+    return fail(asked.error(), options.motions);
+  }
+  const MoveRequest& request = asked.value();
   if (!options.verified.empty()) {
     return verify(options, request, start.value(), target.value());
   }
@@ -193,6 +204,10 @@ int run(const MoveArguments& options) {
 void add_ways(CLI::App& command, MoveArguments& options) {
   command.add_flag("--pivot", options.pivots,
                    "Cubes turn about edges, and need the cells that they sweep on their way");
+  add_motions(command, options.motions,
+              "The motions that a module has, as data: pivoting (as --pivot), catoms3D (no module "
+              "goes between two that are opposite to each other), or a file")
+      .excludes("--pivot");
   command
       .add_option("--within", options.within,
                   "No module leaves the box of cells with these corners")

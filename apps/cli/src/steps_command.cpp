@@ -8,6 +8,7 @@
 #include "commands.hpp"
 #include "figure.hpp"
 #include "file_clash.hpp"
+#include "holdfast/move.hpp"
 #include "holdfast/order.hpp"
 #include "holdfast/steps.hpp"
 #include "plan_failure_options.hpp"
@@ -27,6 +28,7 @@ struct StepsArguments {
   Figure figure;
   std::string html;
   std::string vtk;
+  std::string motions;
   std::string step;  ///< Of which the robot is drawn: "start", or from 0; empty for none.
   bool is_strip = false;
   bool is_quiet = false;
@@ -188,7 +190,15 @@ int run(const StepsArguments& options) {
     return fail(file.error(), options.file);
   }
   Progress progress(options.is_quiet);
-  const auto result = judge_steps(file.value(), judging(options, file.value(), progress, "judged"));
+  StepsOptions judging_options = judging(options, file.value(), progress, "judged");
+  if (!options.motions.empty()) {
+    auto motions = find_motions(options.motions);
+    if (!motions) {
+      return fail(motions.error(), options.motions);
+    }
+    judging_options.motions = std::move(motions).value();
+  }
+  const auto result = judge_steps(file.value(), judging_options);
   if (!result) {
     return fail(result.error(), options.file);
   }
@@ -201,6 +211,10 @@ int run(const StepsArguments& options) {
   if (!options.is_quiet && leaves_standard_output(options.outputs())) {
     fmt::print("{} {}\n{}{}", banner(verdict), io::one_line(file.value().name),
                steps_text(file.value(), result.value()), failures.value().text);
+    if (judging_options.motions) {
+      fmt::print("  motions     every move is one of \"{}\", so what it sweeps is free\n",
+                 io::one_line(judging_options.motions->name));
+    }
   }
   return write_files(options, file.value(), result.value(), failures.value())
              ? worse(exit_code(verdict), failures.value())
@@ -266,6 +280,9 @@ Command add_steps(CLI::App& app) {
                   "stages of steps that only attach, or only detach, are certified by a bound of "
                   "their load ratio only",
                   plan::kExactModuleCount));
+  add_motions(*command, options->motions,
+              "Every move must be one of these motions of a single module, so that what it sweeps "
+              "is free: pivoting, catoms3D, or a file; see holdfast move");
   command
       ->add_flag("--verify", options->is_certificate,
                  "FILE is a certificate that there is no order, of holdfast order: replay it")

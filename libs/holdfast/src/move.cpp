@@ -35,13 +35,33 @@ base::Result<plan::MoveTask> task_of(const io::Document& start, const io::Docume
     return task.error();
   }
   plan::MoveTask made = std::move(task).value();
-  made.pivots = request.pivots;
+  made.motions = request.motions;
   made.within = request.within;
   made.ignores_mechanics = request.ignores_mechanics;
   return made;
 }
 
 }  // namespace
+
+base::Result<std::shared_ptr<const plan::Motions>> find_motions(const std::string& name_or_file) {
+  if (name_or_file == "pivoting") {
+    return plan::pivoting_cubes();
+  }
+  plan::Motions motions{.name = name_or_file, .lattice = base::kFaceCentred, .goes_between = false};
+  if (name_or_file != "catoms3D") {
+    const auto text = read_file(name_or_file);
+    if (!text) {
+      return text.error();
+    }
+    auto read = io::read_motions(text.value());
+    if (!read) {
+      return read.error();
+    }
+    motions = std::move(read).value();
+    motions.name = motions.name.empty() ? name_or_file : motions.name;
+  }
+  return std::make_shared<const plan::Motions>(std::move(motions));
+}
 
 base::Result<io::MoveReport> seek_moves(const io::Document& start_stated,
                                         const io::Document& target_stated,

@@ -34,7 +34,8 @@ std::string step_words_of(const plan::OrderTask& task) {
 
 std::string step_words_of(const plan::MoveTask& task) {
   std::string steps = "1 module at a time, ";
-  steps += task.pivots ? "turning about edges" : "along its neighbours";
+  steps += task.motions ? fmt::format("by the motions \"{}\"", io::one_line(task.motions->name))
+                        : "along its neighbours";
   if (task.within) {
     steps += fmt::format(", within {} to {}", model::text(task.within->low),
                          model::text(task.within->high));

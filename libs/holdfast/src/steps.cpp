@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "holdfast/host/text.hpp"
+#include "holdfast/plan/module_moves.hpp"
 #include "plan_page.hpp"
 #include "series/series_files.hpp"
 #include "step_walk.hpp"
@@ -26,6 +27,26 @@ io::StepsEntry entry_of(const StepsFile& file, const StepsResult& result) {
           .judgement = &result.judgement,
           .warnings = file.warnings,
           .seconds = result.seconds};
+}
+
+/// The first step with a move that is none of the motions, as judge_steps() says it.
+std::optional<base::Error> find_barred_step(const io::Sequence& sequence,
+                                            const std::shared_ptr<const plan::Motions>& motions) {
+  if (motions->lattice != sequence.start.lattice) {
+    return base::bad_input(plan::motions_of_other_lattice(*motions));
+  }
+  std::size_t step = 0;
+  auto error = for_each_step(sequence.start, sequence.steps,
+                             [&](const plan::RobotState& robot, const model::Step& each,
+                                 const plan::Transition& transition, std::size_t i) {
+                               step = i;
+                               return plan::find_barred_move(robot, each, transition, motions);
+                             });
+  if (error) {
+    error->message = fmt::format("step {}: {}", step, error->message);
+    error->where = std::to_string(step);
+  }
+  return error;
 }
 
 }  // namespace
@@ -55,6 +76,17 @@ base::Result<StepsResult> judge_steps(const StepsFile& file, const StepsOptions&
   if (!sequence) {
     return sequence.error();
   }
+  const auto located = [&](base::Error error) {
+    if (!error.where.empty()) {
+      error.where = io::step_pointer(file.document, std::stoul(error.where));
+    }
+    return io::with_other_lattice(std::move(error), file.document);
+  };
+  if (options.motions) {
+    if (auto error = find_barred_step(sequence.value(), options.motions)) {
+      return located(*std::move(error));
+    }
+  }
   plan::SequenceOptions more;
   more.ends_when_unsafe = options.ends_when_unsafe;
   if (!options.is_exact) {
@@ -65,11 +97,7 @@ base::Result<StepsResult> judge_steps(const StepsFile& file, const StepsOptions&
   more.solver.memory_bytes_max = options.memory_bytes_max;
   auto judged = plan::judge_sequence(sequence.value().start, sequence.value().steps, more);
   if (!judged) {
-    base::Error error = judged.error();
-    if (!error.where.empty()) {
-      error.where = io::step_pointer(file.document, std::stoul(error.where));
-    }
-    return io::with_other_lattice(std::move(error), file.document);
+    return located(judged.error());
   }
   StepsResult result{.judgement = std::move(judged).value()};
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

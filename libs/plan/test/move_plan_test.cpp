@@ -82,7 +82,7 @@ TEST(MovePlan, a_cube_that_pivots_needs_the_cells_that_it_sweeps) {
   MoveTask task = task_of(start, target);
   task.within = CellBox{.low = {0, 0, 0}, .high = {3, 0, 2}};
   EXPECT_EQ(plan_of(task).steps.size(), 1U);
-  task.pivots = true;
+  task.motions = pivoting_cubes();
   const MovePlan plan = plan_of(task);
   EXPECT_EQ(plan.outcome, MoveOutcome::kNone);
   EXPECT_EQ(verify(*plan.certificate).value().shape_count, 1U);
@@ -197,9 +197,9 @@ TEST(MovePlan, refuses_what_is_no_pair_of_shapes_of_one_robot) {
             "the robot: the module (0,0,0) is outside the box from (1,0,0) to (5,5,5)");
   task = task_of(row, row);
   task.start.lattice = task.target.lattice = base::kFaceCentred;
-  task.pivots = true;
+  task.motions = pivoting_cubes();
   EXPECT_EQ(fault_of(task),
-            "only cubes pivot about an edge; modules of other lattices roll as they are");
+            "the motions \"pivoting\" are those of modules of another lattice than the robot's");
 }
 
 TEST(MovePlan, of_spheres_and_discs_is_safe_and_shortest) {

@@ -118,7 +118,8 @@ TEST(Rolling, a_cube_pivots_where_its_turning_square_meets_nobody) {
     }
     spec.existing.push_back({0, 0, 0});
     const std::set<Cell> truth = turned_squares(taken);
-    EXPECT_EQ(arrivals_of(state_of(spec), {0, 0, 0}, {.pivots = true}), truth) << round;
+    EXPECT_EQ(arrivals_of(state_of(spec), {0, 0, 0}, {.motions = pivoting_cubes()}), truth)
+        << round;
     move_count += static_cast<int>(truth.size());
   }
   EXPECT_GE(move_count, holdfast::test::least(100));

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,7 +24,7 @@ namespace holdfast {
 
 /// The rules by which modules may go, and the time for which a plan is sought.
 struct MoveRequest {
-  bool pivots = false;  ///< As of plan::MoveTask, all three.
+  std::shared_ptr<const plan::Motions> motions = {};  ///< As of plan::MoveTask, all three.
   std::optional<plan::CellBox> within = {};
   bool ignores_mechanics = false;
   std::uint64_t seed = 0;
@@ -33,6 +34,11 @@ struct MoveRequest {
   std::function<bool()> is_interrupted = {};
   std::function<void(std::size_t states, int distance)> progress = {};
 };
+
+/// The motions in a file, or those of this name: "pivoting" (plan::pivoting_cubes()), "catoms3D"
+/// (balls that roll, and go between no two that are opposite to each other). Errors: those of
+/// read_file() and io::read_motions().
+base::Result<std::shared_ptr<const plan::Motions>> find_motions(const std::string& name_or_file);
 
 /// Seeks moves from the shape of one document to that of another. Errors: those of io::move_task()
 /// and plan::find_moves().

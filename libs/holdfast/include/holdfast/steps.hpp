@@ -4,12 +4,14 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "holdfast/holdfast.hpp"
 #include "holdfast/io/steps_report.hpp"  // IWYU pragma: export
+#include "holdfast/plan/motions.hpp"     // IWYU pragma: export
 #include "holdfast/plan/sequence.hpp"    // IWYU pragma: export
 
 /// Sequences of steps: is every stage of each safe?
@@ -42,6 +44,8 @@ struct StepsOptions {
   /// comes to have more than plan::kExactModuleCount modules: most stages of such steps are
   /// certified by a bound instead.
   bool is_exact = false;
+  /// Every move must be one of these, if they are given, and of a single module.
+  std::shared_ptr<const plan::Motions> motions = {};
   std::function<void(std::size_t judged_count)> progress = {};  ///< Called between steps.
 };
 

@@ -208,14 +208,7 @@ base::Result<Experiments> read_experiments(std::string_view text) {
   const JsonPlace top;
   const Json& value = root.value();
   Experiments found;
-  for (const auto& [key, expected] : {std::pair<const char*, Json>{"format", kFormat},
-                                      std::pair<const char*, Json>{"version", 1}}) {
-    if (value.is_object() && (!value.contains(key) || value.at(key) != expected)) {
-      reading.fail(top.at(key),
-                   fmt::format("expected {}, found {}", expected.dump(),
-                               value.contains(key) ? value.at(key).dump() : "no such key"));
-    }
-  }
+  expect_format(reading, value, top, kFormat);
   for (const auto& [key, member] : reading.members(value, top)) {
     read_member(reading, key, member, top.at(key), found);
   }

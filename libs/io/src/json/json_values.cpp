@@ -220,4 +220,16 @@ std::vector<Element> JsonReading::element_list(const Json& value, const JsonPlac
   return list;
 }
 
+void expect_format(JsonReading& reading, const Json& value, const JsonPlace& place,
+                   std::string_view format) {
+  for (const auto& [key, expected] : {std::pair<const char*, Json>{"format", format},
+                                      std::pair<const char*, Json>{"version", 1}}) {
+    if (value.is_object() && (!value.contains(key) || value.at(key) != expected)) {
+      reading.fail(place.at(key),
+                   fmt::format("expected {}, found {}", expected.dump(),
+                               value.contains(key) ? value.at(key).dump() : "no such key"));
+    }
+  }
+}
+
 }  // namespace holdfast::io

@@ -71,4 +71,8 @@ class JsonReading : public Reading {
   std::array<std::int32_t, 3> triple(const Json& value, const JsonPlace& place, IntegerRange range);
 };
 
+/// Fails unless an object says that it is of version 1 of a format.
+void expect_format(JsonReading& reading, const Json& value, const JsonPlace& place,
+                   std::string_view format);
+
 }  // namespace holdfast::io

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/plan/module_moves.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <set>
 #include <span>
 
+#include "barring_floor.hpp"
 #include "cut_vertices.hpp"
-#include "holdfast/plan/transition.hpp"
 #include "moves/rolling.hpp"
 #include "steps/way.hpp"
 
@@ -31,6 +33,9 @@ class MoveFinder {
         axial_(base::axial_of(lattice_, from_)) {}
 
   std::vector<model::Move> find() {
+    if (is_barred_between(axial_)) {
+      return {};
+    }
     for (const Cell& along : steps()) {
       if (is_open(sum(axial_, along)) && can_step(along)) {
         add({.from = from_, .to = base::cell_of(lattice_, sum(axial_, along)), .carrier = {}});
@@ -75,8 +80,8 @@ class MoveFinder {
 
   /// Whether a module's body gets into the next cell.
   bool can_step(const Cell& along) const {
-    if (lattice_ == base::kCubic) {
-      return !rule_.pivots || can_pivot(along);
+    if (has_motions() || lattice_ == base::kCubic) {
+      return !has_motions() || has_motion(along, std::nullopt);
     }
     const Cell to = sum(axial_, along);
     const auto is_beside = [&](const Cell& away) {
@@ -147,31 +152,37 @@ class MoveFinder {
     });
   }
 
-  /// Whether a cube can turn by a quarter over two modules in a row.
-  bool can_pivot(const Cell& along) const {
-    const Cell back = difference({}, along);
-    return std::ranges::any_of(steps(), [&](const Cell& away) {
-      const Cell carrier = difference(axial_, away);
-      return away != along && away != back && is_module(carrier) &&
-             is_module(sum(carrier, along)) && is_free(sum(axial_, away)) &&
-             is_free(sum(sum(axial_, away), along));
+  /// Whether one of the motions leads so far, along `carrier` if one is given, relative to here.
+  bool has_motion(const Cell& way, const std::optional<Cell>& carrier) const {
+    return std::ranges::any_of(rule_.motions->motions, [&](const Motion& motion) {
+      return motion.to == way &&
+             (!carrier || std::ranges::find(motion.modules, *carrier) != motion.modules.end()) &&
+             std::ranges::all_of(motion.modules,
+                                 [&](const Cell& cell) { return is_module(sum(axial_, cell)); }) &&
+             std::ranges::all_of(motion.free,
+                                 [&](const Cell& cell) { return is_free(sum(axial_, cell)); });
     });
+  }
+
+  bool has_motions() const { return rule_.motions && !rule_.motions->motions.empty(); }
+
+  /// Whether a cell, axial, is barred as it is between two other modules on opposite sides of it.
+  bool is_barred_between(const Cell& axial) const {
+    return rule_.motions && !rule_.motions->goes_between &&
+           std::ranges::any_of(steps(), [&](const Cell& away) {
+             const Cell one = sum(axial, away);
+             const Cell other = difference(axial, away);
+             return one != axial_ && other != axial_ && is_module(one) && is_module(other);
+           });
   }
 
   /// Whether a module's body gets around a carrier.
   bool can_turn(const Cell& carrier, const Cell& along) const {
-    if (lattice_ == base::kCubic) {
-      return !rule_.pivots || can_pivot_around(difference(axial_, carrier), along);
-    }
     const Cell to = sum(carrier, along);
+    if (has_motions() || lattice_ == base::kCubic) {
+      return !has_motions() || has_motion(difference(to, axial_), difference(carrier, axial_));
+    }
     return !rolls(to, carrier) || can_roll(to, carrier);
-  }
-
-  /// Whether a cube can turn by a half about the edge of its carrier.
-  bool can_pivot_around(const Cell& away, const Cell& along) const {
-    const Cell beyond = sum(axial_, sum(along, along));
-    return is_free(sum(axial_, away)) && is_free(sum(sum(axial_, away), along)) &&
-           is_free(beyond) && is_free(difference(beyond, away));
   }
 
   void add_turns(const Cell& carrier) {
@@ -194,6 +205,9 @@ class MoveFinder {
   std::span<const Cell> steps() const { return steps_of(lattice_); }
 
   bool add(const model::Move& move) {
+    if (is_barred_between(base::axial_of(lattice_, move.to))) {
+      return false;
+    }
     model::Step step;
     step.moves = {move};
     if (!find_transition(robot_, step)) {
@@ -244,6 +258,37 @@ std::vector<std::int32_t> loose_modules(const RobotState& robot) {
 std::vector<model::Move> moves_of(const RobotState& robot, std::int32_t module,
                                   const MoveRule& rule) {
   return MoveFinder(robot, module, rule).find();
+}
+
+std::optional<base::Error> find_barred_move(const RobotState& robot, const model::Step& step,
+                                            const Transition& transition,
+                                            const std::shared_ptr<const Motions>& motions) {
+  std::vector<Cell> there;
+  for (const ModuleState& module : robot.modules()) {
+    if (module.is_there) {
+      there.push_back(module.cell);
+    }
+  }
+  const MoveRule rule = {.motions = motions,
+                         .floor_z = barring_floor(robot.surroundings().support_z, there)};
+  for (const Group& group : transition.groups) {
+    if (group.from.size() > 1) {
+      return base::bad_input(
+          fmt::format("{} modules move as one body from {} on; motions are those of one module",
+                      group.from.size(), model::text(group.from.front())));
+    }
+  }
+  for (const model::Move& move : step.moves) {
+    const std::vector<model::Move> allowed = moves_of(robot, robot.find(move.from), rule);
+    const bool is_allowed = std::ranges::any_of(allowed, [&](const model::Move& each) {
+      return each.to == move.to && (!move.carrier || !each.carrier || each.carrier == move.carrier);
+    });
+    if (!is_allowed) {
+      return base::bad_input(fmt::format("no motion leads from {} to {}", model::text(move.from),
+                                         model::text(move.to)));
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace holdfast::plan

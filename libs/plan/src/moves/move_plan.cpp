@@ -21,7 +21,7 @@ namespace {
 using base::Cell;
 
 MoveRule rule_of(const MoveTask& task) {
-  return {.pivots = task.pivots,
+  return {.motions = task.motions,
           .floor_z = barring_floor(task.start.support_z, task.start.existing, task.target.existing),
           .within = task.within};
 }
@@ -63,9 +63,8 @@ struct Problem {
 };
 
 base::Result<Problem> make_problem(const MoveTask& task) {
-  if (task.pivots && task.start.lattice != base::kCubic) {
-    return base::bad_input(
-        "only cubes pivot about an edge; modules of other lattices roll as they are");
+  if (task.motions && task.motions->lattice != task.start.lattice) {
+    return base::bad_input(motions_of_other_lattice(*task.motions));
   }
   if (auto fault = find_robot_fault(task, task.start, "the robot")) {
     return *std::move(fault);

@@ -144,7 +144,7 @@ class WalkJudge : public SlideJudge {
 
 std::optional<SlideTask> slide_task(const ShapeSpace& space, const MoveRule& rule) {
   const RobotState robot = space.state_of(space.start());
-  if (robot.lattice() != base::kCubic || rule.pivots || space.class_count() != 1 ||
+  if (robot.lattice() != base::kCubic || rule.motions || space.class_count() != 1 ||
       space.start().size() > kCubesMax) {
     return std::nullopt;
   }

@@ -12,8 +12,8 @@
 namespace holdfast::plan {
 
 /// The task of a SlidePlanner between two shapes; none for robots that it does not know: lattices
-/// other than the cubic one, cubes that pivot, of several kinds or more than 3,000, shapes too far
-/// apart.
+/// other than the cubic one, cubes with motions of their own, of several kinds or more than 3,000,
+/// shapes too far apart.
 std::optional<SlideTask> slide_task(const ShapeSpace& space, const MoveRule& rule);
 
 /// Moves of sliding cubes from one shape to another; if none are found, to where they lead.

@@ -26,6 +26,10 @@ struct MoveReport {
 /// make_spec(); it has planned modules or steps.
 base::Result<model::RobotSpec> standing_spec(const Document& document, std::string_view which);
 
+/// Reads the motions of a module, with the images that the text asks for. Errors: what is not as
+/// docs/formats.md has it, or is no motion (plan::valid_motion), with its JSON pointer.
+base::Result<plan::Motions> read_motions(std::string_view text);
+
 /// The robot and where it is to go: existing modules of both. Errors: those of standing_spec() for
 /// each of them.
 base::Result<plan::MoveTask> move_task(const Document& start, const Document& target);

@@ -3,11 +3,15 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "holdfast/base/result.hpp"
 #include "holdfast/model/step.hpp"
+#include "holdfast/plan/motions.hpp"
 #include "holdfast/plan/robot_state.hpp"
+#include "holdfast/plan/transition.hpp"
 
 /// Where single modules of a robot can go in one step.
 namespace holdfast::plan {
@@ -25,10 +29,8 @@ struct CellBox {
 
 /// What bars a module's way besides modules and obstacles.
 struct MoveRule {
-  /// Cubes that turn about an edge of a neighbour instead of sliding along it, and so need the
-  /// cells that they sweep; cubic lattice only. A quarter turn leads to the next cell beside two
-  /// modules in a row, half a turn around the corner of one ([Feshbach 2021]).
-  bool pivots = false;
+  /// The motions of the modules, of their lattice; without them those of its own body.
+  std::shared_ptr<const Motions> motions = {};
   /// No module goes below; none: there is nothing that bars it.
   std::optional<std::int32_t> floor_z = {};
   /// No module leaves it.
@@ -43,5 +45,12 @@ std::vector<std::int32_t> loose_modules(const RobotState& robot);
 /// carrier is named only where there is more than one way around a corner.
 std::vector<model::Move> moves_of(const RobotState& robot, std::int32_t module,
                                   const MoveRule& rule);
+
+/// What bars one of the moves of a step with this transition: it is none of moves_of() with these
+/// motions, or part of a body of several modules, of which motions say nothing. Each move is looked
+/// at as if the others came later.
+std::optional<base::Error> find_barred_move(const RobotState& robot, const model::Step& step,
+                                            const Transition& transition,
+                                            const std::shared_ptr<const Motions>& motions);
 
 }  // namespace holdfast::plan

@@ -22,8 +22,8 @@ namespace holdfast::plan {
 
 struct MoveTask {
   model::RobotSpec start;
-  model::RobotSpec target;  ///< Modules alike are interchangeable.
-  bool pivots = false;      ///< As of MoveRule.
+  model::RobotSpec target;                      ///< Modules alike are interchangeable.
+  std::shared_ptr<const Motions> motions = {};  ///< As of MoveRule.
   std::optional<CellBox> within = {};
   /// Steps need not be safe: neither strength nor balance is judged, but that something holds the
   /// robot.
@@ -89,7 +89,7 @@ struct MovePlan {
 };
 
 /// Errors: start or target is no robot, the start is not safe; shapes of different robots or in
-/// different surroundings; pivoting modules that are no cubes; a module outside the box.
+/// different surroundings; motions of another lattice; a module outside the box.
 base::Result<MovePlan> find_moves(const MoveTask& task, const MoveOptions& options = {});
 
 /// What has been replayed of a certificate.
