@@ -166,9 +166,12 @@ bool is_between(const model::RobotSpec& spec, const Cell& cell, const Cell& from
     const Cell beside = base::neighbour(spec.lattice, cell, direction);
     return beside != from && std::ranges::find(spec.existing, beside) != spec.existing.end();
   };
-  return std::ranges::any_of(base::directions(spec.lattice), [&](base::Direction direction) {
-    return has(direction) && has(base::opposite(direction));
-  });
+  for (const base::Direction direction : base::directions(spec.lattice)) {
+    if (has(direction) && has(base::opposite(direction))) {
+      return true;
+    }
+  }
+  return false;
 }
 
 TEST(Motions, without_those_between_opposing_modules_are_all_others) {
