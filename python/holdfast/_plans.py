@@ -80,7 +80,7 @@ def steps(robot: Union[Robot, Path], plan: Optional[Sequence[Mapping[str, Any]]]
 
 def order(target: Union[Robot, Path], *, start: Optional[Cells] = None, reach: str = 'free',
           source: Optional[Cell] = None, avoid: Optional[Cells] = None, group: int = 1,
-          parallel: Union[int, str] = 1, reverse: bool = False,
+          parallel: Union[int, str] = 1, pieces: bool = False, reverse: bool = False,
           exact: bool = False, seed: int = 0, seconds: float = 300, help_seconds: float = 0,
           threads: int = 0, safety_factor: Optional[float] = None,
           progress: Progress = None, **questions: Unpack[PlanQuestions]) -> Order:
@@ -104,6 +104,9 @@ def order(target: Union[Robot, Path], *, start: Optional[Cells] = None, reach: s
     parallel
         Modules that each step attaches at most, or ``'all'`` that can come: the robot is safe in
         whatever order they arrive.
+    pieces
+        Modules may also come on the ground away from the others: the robot grows in pieces, each
+        of which is judged by itself.
     reverse
         Take the robot apart, from the target to the start.
     exact
@@ -124,8 +127,8 @@ def order(target: Union[Robot, Path], *, start: Optional[Cells] = None, reach: s
     """
     with told(progress, 'order') as tell:
         found: Order = Order._of(_core.order(_robot(target)._asked(safety_factor), start,
-                                             reach, source, avoid, group, parallel, reverse,
-                                             exact, seed, seconds, help_seconds, threads,
+                                             reach, source, avoid, group, parallel, pieces,
+                                             reverse, exact, seed, seconds, help_seconds, threads,
                                              asked_of('order', questions), tell))
     return found
 

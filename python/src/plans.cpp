@@ -219,8 +219,8 @@ std::size_t parallel_of(const py::handle& given) {
 std::shared_ptr<FoundOrder> order(const Structure& target, const py::handle& start,
                                   const py::handle& reach_name, const py::handle& source,
                                   const py::handle& avoid, const py::handle& group,
-                                  const py::handle& parallel, bool is_reversed, bool is_exact,
-                                  const py::handle& seed, const py::handle& seconds,
+                                  const py::handle& parallel, bool in_pieces, bool is_reversed,
+                                  bool is_exact, const py::handle& seed, const py::handle& seconds,
                                   const py::handle& help_seconds, const py::handle& threads,
                                   const py::dict& asked, py::object progress) {
   Watch watch(std::move(progress));
@@ -230,6 +230,7 @@ std::shared_ptr<FoundOrder> order(const Structure& target, const py::handle& sta
   if (request.group_size > 1 && request.parallel_max > 1) {
     throw Error("group and parallel exclude each other");
   }
+  request.in_pieces = in_pieces;
   request.is_reversed = is_reversed;
   request.seed = seed_of(seed);
   request.seconds_max = seconds_of(seconds, "seconds");

@@ -30,6 +30,7 @@ struct OrderArguments {
   std::string source;
   std::vector<std::string> avoid;
   std::size_t group_size = 1;
+  bool in_pieces = false;
   std::string parallel = "1";
   bool is_reversed = false;
   bool is_exact = false;
@@ -134,6 +135,7 @@ base::Result<std::vector<base::Cell>> start_cells(const OrderArguments& options,
 OrderRequest request_of(const OrderArguments& options, Progress& progress) {
   OrderRequest request{.group_size = options.group_size,
                        .parallel_max = parallel_of_text(options.parallel).value(),
+                       .in_pieces = options.in_pieces,
                        .is_reversed = options.is_reversed,
                        .seed = options.seed,
                        .seconds_max = options.seconds,
@@ -334,6 +336,12 @@ void add_ways(CLI::App& command, OrderArguments& options) {
       })
       ->excludes("--group")
       ->capture_default_str();
+  command
+      .add_flag("--pieces", options.in_pieces,
+                "Modules may also come on the ground away from the others, so that the robot grows "
+                "in pieces, each of which is judged by itself")
+      ->excludes("--group")
+      ->excludes("--parallel");
   command.add_flag("--reverse", options.is_reversed,
                    "Take the robot apart, from the target to the start");
 }

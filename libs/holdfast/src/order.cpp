@@ -22,7 +22,8 @@ base::Result<io::OrderReport> seek_order(const io::Document& target, const Order
                                   .start = request.start,
                                   .rule = request.rule,
                                   .group_size = request.group_size,
-                                  .parallel_max = request.parallel_max},
+                                  .parallel_max = request.parallel_max,
+                                  .in_pieces = request.in_pieces},
                          .is_reversed = request.is_reversed};
   const auto begin = std::chrono::steady_clock::now();
   auto result = plan::find_robot_order(

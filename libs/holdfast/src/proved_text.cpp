@@ -26,6 +26,9 @@ std::string step_words_of(const plan::OrderTask& task) {
   } else if (task.rule.reach == plan::Reach::kSurface && task.rule.source) {
     steps += ", each along the surface from " + model::text(*task.rule.source);
   }
+  if (task.in_pieces) {
+    steps += ", in one piece or in several";
+  }
   if (!task.rule.avoid.empty()) {
     steps += fmt::format(", {} avoided", host::counted(task.rule.avoid.size(), "cell"));
   }

@@ -154,10 +154,11 @@ inline constexpr auto kObstacleKeys =
 inline constexpr auto kLoadKeys =
     std::to_array<std::string_view>({"cell", "force_n", "torque_nmm"});
 inline constexpr std::string_view kAnyOrderKey = "any_order";
+inline constexpr std::string_view kApartKey = "apart";
 inline constexpr auto kStepLists =
     std::to_array<std::string_view>({"attach", "detach", "move", "release", "connect"});
 inline constexpr auto kStepKeys =
-    joined(kStepLists, std::to_array<std::string_view>({kAnyOrderKey}));
+    joined(kStepLists, std::to_array<std::string_view>({kAnyOrderKey, kApartKey}));
 inline constexpr auto kMoveKeys = std::to_array<std::string_view>({"from", "to", "carrier"});
 
 /// Names of what an obstacle does, by model::Hold.

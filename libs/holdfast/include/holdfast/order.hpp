@@ -29,6 +29,7 @@ struct OrderRequest {
   plan::ReachRule rule = {};
   std::size_t group_size = 1;
   std::size_t parallel_max = 1;  ///< As of plan::OrderTask.
+  bool in_pieces = false;        ///< As of plan::OrderTask.
   bool is_reversed = false;      ///< Taken apart, from the target to the start.
   std::uint64_t seed = 0;
   double seconds_max = std::numeric_limits<double>::infinity();

@@ -282,11 +282,13 @@ model::Step plan_step(JsonReading& reading, const Json& value, const JsonPlace& 
       step.connect = pairs(reading, member, here);
     } else if (key == kAnyOrderKey) {
       step.is_any_order = reading.boolean(member, here);
+    } else if (key == kApartKey) {
+      step.is_apart = reading.boolean(member, here);
     } else {
       reading.note_unknown_key(here, kStepKeys);
     }
   }
-  if (step == model::Step{.is_any_order = step.is_any_order}) {
+  if (step == model::Step{.is_any_order = step.is_any_order, .is_apart = step.is_apart}) {
     reading.fail(place, fmt::format("expected an entry in at least one of \"{}\", found none",
                                     fmt::join(kStepLists, "\", \"")));
   }
@@ -296,6 +298,9 @@ model::Step plan_step(JsonReading& reading, const Json& value, const JsonPlace& 
     reading.fail(place.at(kAnyOrderKey),
                  "only a step that attaches, or only detaches, is done in any order: expected "
                  "nothing else beside \"attach\" or \"detach\"");
+  }
+  if (step.is_apart && step.attach.empty()) {
+    reading.fail(place.at(kApartKey), "only attached modules stand apart: expected \"attach\"");
   }
   return step;
 }

@@ -94,6 +94,9 @@ std::string step_object(const model::Step& step) {
   if (step.is_any_order) {
     members.push_back(member(kAnyOrderKey, "true"));
   }
+  if (step.is_apart) {
+    members.push_back(member(kApartKey, "true"));
+  }
   return object(members);
 }
 

@@ -119,6 +119,11 @@ void CertificateReader::read_task() {
     return;
   }
   task.group_size = group.get<std::size_t>();
+  if (!at("pieces").is_null() && !at("pieces").is_boolean()) {
+    fail("pieces", "true or false");
+    return;
+  }
+  task.in_pieces = at("pieces") == true;
   const std::string reach = choice("reach", {"free", "line", "surface"});
   for (const plan::Reach each : {plan::Reach::kLine, plan::Reach::kSurface}) {
     task.rule.reach = reach == plan::name(each) ? each : task.rule.reach;
@@ -301,6 +306,9 @@ std::string write_order_certificate(const Document& target,
   if (!task.rule.avoid.empty()) {
     items.push_back(member("avoid", json_text(std::span(task.rule.avoid))));
   }
+  if (task.in_pieces) {
+    items.push_back(member("pieces", "true"));
+  }
   items.push_back(member("sense", json_text(std::string(is_growing ? "attach" : "detach"))));
   items.push_back(member("states", array(states, 2)));
   items.push_back(member("blocked", array(blocked, 2)));
@@ -329,7 +337,9 @@ base::Result<Document> order_steps(const Document& target, const plan::Order& or
   gather_modules(document);
   std::vector<model::Step>& plan = document.extension.plan;
   for (const plan::Batch& group : order.steps) {
+    const bool is_apart = !order.is_apart.empty() && order.is_apart[plan.size()];
     model::Step& step = plan.emplace_back();
+    step.is_apart = is_apart && !is_reversed;
     step.is_any_order = order.is_any_order && group.size() > 1;
     for (const plan::Element element : group) {
       const base::Cell& cell = spec.value().existing[static_cast<std::size_t>(element)];
@@ -350,10 +360,11 @@ base::Result<Document> order_steps(const Document& target, const plan::Order& or
   std::vector<Step> planned;
   std::vector<OwnParameters> own;
   if (is_any_special(spec.value(), later)) {
-    if (std::ranges::any_of(plan, &model::Step::is_any_order)) {
+    if (std::ranges::any_of(
+            plan, [](const model::Step& step) { return step.is_any_order || step.is_apart; })) {
       return base::bad_input(
-          "modules that are attached have kinds or masses of their own, which steps in any order "
-          "cannot say: expected modules one after another");
+          "modules that are attached have kinds or masses of their own, which steps in any order, "
+          "and apart from the robot, cannot say: expected modules one after another, in one piece");
     }
     own = plan_modules(document, std::exchange(plan, {}), planned);
   }

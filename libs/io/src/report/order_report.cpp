@@ -262,7 +262,9 @@ std::string order_text(const OrderReport& report) {
     return "NOT FOUND   " + why + furthest_words(report) + examined;
   }
   if (order.outcome == OrderOutcome::kNone) {
-    return "NONE        there is no safe order that keeps the robot in one piece\n" +
+    return std::string("NONE        there is no safe order") +
+           (report.task.in_pieces ? ", in one piece or in several\n"
+                                  : " that keeps the robot in one piece\n") +
            none_words(report) + help_words(report) + examined;
   }
   std::string text = found_words(report);

@@ -3,6 +3,7 @@
 #include "bounds/robot_growth.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "cut_vertices.hpp"
 #include "holdfast/base/rng.hpp"
@@ -30,18 +31,25 @@ std::vector<std::size_t> supports_and(const model::Robot& target, const ElementS
 }  // namespace
 
 RobotGrowth::RobotGrowth(const model::RobotSpec& spec, const model::Robot& target,
-                         const ElementSet& core, const ReachRule& rule, int thread_count)
+                         const ElementSet& core, const ReachRule& rule, bool in_pieces,
+                         int thread_count)
     : spec_(spec),
       target_(target),
       core_(core),
       rule_(rule),
       reach_(spec, rule),
+      in_pieces_(in_pieces),
       thread_count_(thread_count),
       run_judge_(spec, target, thread_count),
       places_(places_in_layers(target, supports_and(target, core))),
       state_(spec.existing.size()),
       beside_count_(spec.existing.size()) {
-  if (verdict::is_on_flat_floor(target) && target.fixed_count() == 0) {
+  for (std::size_t i = 0; in_pieces && i < target.modules().size(); ++i) {
+    if (target.modules()[i].support != model::Support::kNone) {
+      supported_.push_back(static_cast<Element>(i));
+    }
+  }
+  if (!in_pieces && verdict::is_on_flat_floor(target) && target.fixed_count() == 0) {
     balance_.emplace(target);
   }
 }
@@ -110,18 +118,60 @@ void RobotGrowth::move_to(const ElementSet& state) {
   }
 }
 
-/// Modules that leave a connected robot with a support behind.
+/// By module: whether others hang on it. In pieces what is supported is connected through the
+/// ground, a row of further nodes, one for each module that is.
+std::vector<bool> RobotGrowth::needed_in(const ElementSet& state) const {
+  const std::size_t degree = target_.connected()[0].size();
+  const auto beside = [&](Element module, std::size_t direction) {
+    const std::int32_t other = target_.connected()[base::at(module)][direction];
+    return other != model::Robot::kNoNeighbour && state.contains(other) ? other : -1;
+  };
+  if (!in_pieces_) {
+    return cut_vertices(element_count(), state.elements().front(), degree, beside);
+  }
+  const auto count = static_cast<std::int32_t>(element_count());
+  const auto ground_count = static_cast<std::int32_t>(supported_.size());
+  const auto place_of = [&](Element module) {
+    const auto found = std::ranges::lower_bound(supported_, module);
+    return found != supported_.end() && *found == module
+               ? count + static_cast<std::int32_t>(found - supported_.begin())
+               : -1;
+  };
+  const auto below = [&](std::int32_t ground, std::size_t direction) {
+    const std::int32_t next = ground + (direction == 0 ? 1 : -1);
+    if (direction < 2) {
+      return next >= 0 && next < ground_count ? count + next : -1;
+    }
+    const Element module = supported_[base::at(ground)];
+    return direction == 2 && state.contains(module) ? module : -1;
+  };
+  return cut_vertices(element_count() + supported_.size(), count, degree + 1,
+                      [&](std::int32_t node, std::size_t direction) {
+                        return node >= count        ? below(node - count, direction)
+                               : direction < degree ? beside(node, direction)
+                                                    : place_of(node);
+                      });
+}
+
+/// Adds modules that may come on the ground away from all others.
+void RobotGrowth::add_feet(std::vector<Element>& list) const {
+  std::vector<Rank> feet;
+  for (const Element element : supported_) {
+    if (!state_.contains(element) && beside_count_[base::at(element)] == 0) {
+      feet.push_back(rank(element));
+    }
+  }
+  std::ranges::sort(feet);
+  std::ranges::transform(feet, std::back_inserter(list), &Rank::second);
+}
+
+/// Modules that leave a connected robot, or pieces, with a support behind.
 std::vector<Element> RobotGrowth::removable(const ElementSet& state) const {
   std::vector<Element> list;
   if (state.size() < 2) {
     return list;
   }
-  const std::vector<bool> needed = cut_vertices(
-      element_count(), state.elements().front(), target_.connected()[0].size(),
-      [&](Element module, std::size_t direction) {
-        const std::int32_t other = target_.connected()[base::at(module)][direction];
-        return other != model::Robot::kNoNeighbour && state.contains(other) ? other : -1;
-      });
+  const std::vector<bool> needed = needed_in(state);
   const auto is_support = [&](Element element) {
     return target_.modules()[base::at(element)].support != model::Support::kNone;
   };
@@ -186,6 +236,7 @@ std::vector<Element> RobotGrowth::candidates(const ElementSet& state, Sense sens
     for (const Rank& rank : frontier_) {
       list.push_back(rank.second);
     }
+    add_feet(list);
   }
   list = reachable(std::move(list), state, sense);
   put_toppling_last(list, sense);
@@ -195,7 +246,7 @@ std::vector<Element> RobotGrowth::candidates(const ElementSet& state, Sense sens
 std::optional<Element> RobotGrowth::first_candidate(const ElementSet& state, Sense sense,
                                                     std::uint64_t seed,
                                                     const std::function<bool(Element)>& is_open) {
-  if (sense == Sense::kShrinking || rule_.reach != Reach::kFree) {
+  if (sense == Sense::kShrinking || rule_.reach != Reach::kFree || in_pieces_) {
     return GrowingStructure::first_candidate(state, sense, seed, is_open);
   }
   set_seed(seed);
@@ -214,10 +265,21 @@ std::optional<Element> RobotGrowth::first_candidate(const ElementSet& state, Sen
 }
 
 Judgement RobotGrowth::judge(const ElementSet& state) {
-  const auto part = model::Robot::create(part_of(spec_, state), 1);
-  // A set of modules that is no robot, such as a start that is not connected, is not safe.
-  return part ? plan::judge(part.value(), {.thread_count = thread_count_})
-              : Judgement{.verdict = verdict::Verdict::kUnstable};
+  const auto judge_piece = [&](const ElementSet& piece) {
+    const auto part = model::Robot::create(part_of(spec_, piece), 1);
+    // A set of modules that is no robot, such as a start that is not connected, is not safe.
+    return part ? plan::judge(part.value(), {.thread_count = thread_count_})
+                : Judgement{.verdict = verdict::Verdict::kUnstable};
+  };
+  if (!in_pieces_) {
+    return judge_piece(state);
+  }
+  std::optional<Judgement> whole;
+  for (const ElementSet& piece : pieces_of(target_, state)) {
+    const Judgement judged = judge_piece(piece);
+    whole = whole ? both_of(*whole, judged) : judged;
+  }
+  return whole.value_or(Judgement{.verdict = verdict::Verdict::kUnstable});
 }
 
 std::vector<std::optional<Judgement>> RobotGrowth::judge_each(
@@ -226,7 +288,7 @@ std::vector<std::optional<Judgement>> RobotGrowth::judge_each(
   host::Team team(thread_count_);
   team.each(states.size(), [&](std::size_t i) {
     if (!is_late()) {
-      judgements[i] = judgement_of(run_judge_.assess(states[i]));
+      judgements[i] = in_pieces_ ? judge(states[i]) : judgement_of(run_judge_.assess(states[i]));
     }
   });
   return judgements;

@@ -21,13 +21,13 @@
 namespace holdfast::plan {
 
 /// A robot that grows module by module; element i is the target's module i. Every state is a robot
-/// of its own, connected and supported, and judged as such.
+/// of its own, connected and supported, and judged as such; or several of these.
 class RobotGrowth final : public GrowingStructure {
  public:
   /// `target` is the robot of `spec`, all of whose modules exist. Modules of `core` are in all
-  /// states. Keeps references to all three.
+  /// states, which may be `in_pieces`. Keeps references to all three.
   RobotGrowth(const model::RobotSpec& spec, const model::Robot& target, const ElementSet& core,
-              const ReachRule& rule, int thread_count);
+              const ReachRule& rule, bool in_pieces, int thread_count);
 
   std::size_t element_count() const override { return spec_.existing.size(); }
 
@@ -47,9 +47,9 @@ class RobotGrowth final : public GrowingStructure {
                                    std::span<const Element> run,
                                    const std::function<bool()>& is_late) override;
 
-  std::size_t run_length_max() const override { return RunJudge::kRunLength; }
+  std::size_t run_length_max() const override { return in_pieces_ ? 1 : RunJudge::kRunLength; }
 
-  /// Judges these connected states as judge() does, each solved; threads share them. None of those
+  /// Judges these states as judge() does, each solved; threads share them. None of those
   /// that are left once `is_late`, which several threads may ask.
   std::vector<std::optional<Judgement>> judge_each(std::span<const ElementSet> states,
                                                    const std::function<bool()>& is_late);
@@ -64,6 +64,8 @@ class RobotGrowth final : public GrowingStructure {
   void add(Element element);
   void remove(Element element);
   std::vector<Element> removable(const ElementSet& state) const;
+  std::vector<bool> needed_in(const ElementSet& state) const;
+  void add_feet(std::vector<Element>& list) const;
   std::vector<Element> reachable(std::vector<Element> list, const ElementSet& state,
                                  Sense sense) const;
   void put_toppling_last(std::vector<Element>& list, Sense sense);
@@ -73,6 +75,8 @@ class RobotGrowth final : public GrowingStructure {
   const ElementSet& core_;
   ReachRule rule_;
   ReachFinder reach_;
+  bool in_pieces_;
+  std::vector<Element> supported_;  ///< Modules that something supports, if states are in pieces.
   int thread_count_;
   RunJudge run_judge_;
   std::vector<LayerPlace> places_;  ///< By module, about the supports and the core.

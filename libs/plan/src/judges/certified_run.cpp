@@ -16,8 +16,8 @@ namespace {
 constexpr std::size_t kStepMin = 8;
 
 std::optional<Sense> sense_of(const model::Step& step) {
-  if (step.is_any_order || !step.moves.empty() || !step.release.empty() || !step.connect.empty() ||
-      step.attach.empty() == step.detach.empty()) {
+  if (step.is_any_order || step.is_apart || !step.moves.empty() || !step.release.empty() ||
+      !step.connect.empty() || step.attach.empty() == step.detach.empty()) {
     return std::nullopt;
   }
   return step.detach.empty() ? Sense::kGrowing : Sense::kShrinking;

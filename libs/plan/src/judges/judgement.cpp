@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "holdfast/verdict/deformed.hpp"
+#include "judges/stage_judge.hpp"
 
 namespace holdfast::plan {
 
@@ -46,6 +47,15 @@ verdict::Assessment assess_bent(const model::Robot& robot,
                                    .memory_bytes_max = options.memory_bytes_max,
                                    .thread_count = options.thread_count})
       .assessment;
+}
+
+Judgement both_of(const Judgement& a, const Judgement& b) {
+  Judgement both = verdict::severity(b.verdict) > verdict::severity(a.verdict) ? b : a;
+  both.load_ratio_max = larger(a.load_ratio_max, b.load_ratio_max);
+  both.load_ratio_high = larger(a.load_ratio_high, b.load_ratio_high);
+  both.margin_mm = smaller(a.margin_mm, b.margin_mm);
+  both.is_bound = a.is_bound || b.is_bound;
+  return both;
 }
 
 std::string verdict_text(const Judgement& judgement) {

@@ -97,11 +97,14 @@ base::Result<std::vector<ElementSet>> find_starts(const OrderTask& task,
                       model::text(cell)));
     }
   }
-  const auto start = model::Robot::create(part_of(task.target, modules.value()));
-  if (!start) {
-    return bad_start(
-        fmt::format("the start: {}{}", start.error().message,
-                    task.start.empty() ? "; give one that connects the fixed modules" : ""));
+  for (const ElementSet& piece :
+       task.in_pieces ? pieces_of(target, modules.value()) : std::vector{modules.value()}) {
+    const auto start = model::Robot::create(part_of(task.target, piece));
+    if (!start) {
+      return bad_start(
+          fmt::format("the start: {}{}", start.error().message,
+                      task.start.empty() ? "; give one that connects the fixed modules" : ""));
+    }
   }
   return std::vector<ElementSet>{std::move(modules).value()};
 }
@@ -186,6 +189,9 @@ base::Result<Setting> make_setting(const OrderTask& task, int thread_count) {
         "modules come in any order, up to one number of them at a time, or several at the same "
         "instant: expected at least one module at a time, and no groups beside several");
   }
+  if (task.in_pieces && (task.parallel_max > 1 || task.group_size > 1)) {
+    return base::bad_input("a robot that grows in pieces does so by one module at a time");
+  }
   if (!task.target.planned.empty()) {
     return base::bad_input("the target has planned modules: all of an order's modules exist in it");
   }
@@ -206,6 +212,20 @@ base::Result<Setting> make_setting(const OrderTask& task, int thread_count) {
   return Setting{.target = std::move(target).value(),
                  .starts = std::move(starts).value(),
                  .core = std::move(core)};
+}
+
+/// Whether the modules of each step of an order in pieces are connected to none that is there.
+std::vector<bool> steps_apart(const model::Robot& target, const Order& order) {
+  std::vector<bool> are_apart;
+  ElementSet there = order.start;
+  for (const Batch& group : order.steps) {
+    are_apart.push_back(
+        std::ranges::none_of(target.connected()[base::at(group.front())], [&](std::int32_t other) {
+          return other != model::Robot::kNoNeighbour && there.contains(other);
+        }));
+    std::ranges::for_each(group, [&](Element element) { there.insert(element); });
+  }
+  return are_apart;
 }
 
 /// Solves the states on the way that a bound has certified, as long as there is time.
@@ -282,7 +302,8 @@ base::Result<RobotOrder> find_robot_order(const OrderTask& task, const RobotOrde
     return setting.error();
   }
   const Setting& made = setting.value();
-  RobotGrowth growth(task.target, made.target, made.core, task.rule, options.thread_count);
+  RobotGrowth growth(task.target, made.target, made.core, task.rule, task.in_pieces,
+                     options.thread_count);
   if (!task.start.empty()) {
     const Judgement start = growth.judge(made.starts.front());
     if (!start.is_safe()) {
@@ -299,6 +320,9 @@ base::Result<RobotOrder> find_robot_order(const OrderTask& task, const RobotOrde
                              .is_interrupted = options.is_interrupted,
                              .told_end = options.told_end,
                              .progress = options.progress});
+  if (task.in_pieces) {
+    result.order.is_apart = steps_apart(made.target, result.order);
+  }
   const bool is_parallel = task.parallel_max > 1;
   if (is_parallel && result.order.outcome == OrderOutcome::kFound) {
     TimeSteps steps(task, made.target, options, patience);
@@ -329,7 +353,7 @@ base::Result<CertificateCheck> verify(const OrderCertificate& certificate, int t
     return setting.error();
   }
   const Setting& made = setting.value();
-  RobotGrowth growth(task.target, made.target, made.core, task.rule, thread_count);
+  RobotGrowth growth(task.target, made.target, made.core, task.rule, task.in_pieces, thread_count);
   const States inside(closure.states.begin(), closure.states.end());
   States beyond;
   const std::vector<ElementSet> whole = {whole_of(task)};

@@ -78,16 +78,6 @@ std::vector<base::Cell> cells_to_come(const OrderTask& task, std::span<const Ele
   return cells;
 }
 
-/// What two robots are that are both safe.
-Judgement both_of(const Judgement& a, const Judgement& b) {
-  Judgement both = a;
-  both.load_ratio_max = larger(a.load_ratio_max, b.load_ratio_max);
-  both.load_ratio_high = larger(a.load_ratio_high, b.load_ratio_high);
-  both.margin_mm = smaller(a.margin_mm, b.margin_mm);
-  both.is_bound = a.is_bound || b.is_bound;
-  return both;
-}
-
 }  // namespace
 
 std::size_t step_count_least(const model::Robot& target, const ElementSet& start,
@@ -209,7 +199,7 @@ TimeSteps::Found TimeSteps::by_checks(std::span<const Element> candidates) {
   const bool is_large = target_.modules().size() > kExactModuleCount;
   const std::size_t count_max =
       std::min(task_.parallel_max, is_large ? kCheckedMaxOfLarge : kCheckedMax);
-  RobotGrowth growth(task_.target, target_, state_, task_.rule, options_.thread_count);
+  RobotGrowth growth(task_.target, target_, state_, task_.rule, false, options_.thread_count);
   Found found{.judgement = {.verdict = verdict::Verdict::kSafe}};
   std::vector<ElementSet> parts = {state_};
   for (const Element element : candidates.first(std::min(candidates.size(), kTriedByChecks))) {
@@ -226,10 +216,7 @@ TimeSteps::Found TimeSteps::by_checks(std::span<const Element> candidates) {
       continue;
     }
     for (const auto& each : judged) {
-      Judgement& all = found.judgement;
-      all.load_ratio_max = larger(all.load_ratio_max, each->load_ratio_max);
-      all.load_ratio_high = larger(all.load_ratio_high, each->load_ratio_high);
-      all.margin_mm = smaller(all.margin_mm, each->margin_mm);
+      found.judgement = both_of(found.judgement, *each);
     }
     found.batch.push_back(element);
     parts.insert(parts.end(), more.begin(), more.end());
@@ -285,7 +272,7 @@ bool TimeSteps::take(Found found) {
 
 /// Seeks another order from the state that was reached.
 bool TimeSteps::seek_on() {
-  RobotGrowth growth(task_.target, target_, state_, task_.rule, options_.thread_count);
+  RobotGrowth growth(task_.target, target_, state_, task_.rule, false, options_.thread_count);
   const std::size_t left = order_.size() - place_;
   const Order found = find_order(growth, {&state_, 1},
                                  {.seed = options_.seed,

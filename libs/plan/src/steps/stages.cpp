@@ -205,10 +205,10 @@ base::Result<std::vector<Scene>> shift_scenes(const RobotState& before, const mo
   return scenes;
 }
 
-/// What was attached must touch the robot, also where a support holds it.
+/// What was attached must touch the robot, also where a support holds it, unless it is to be apart.
 std::optional<base::Error> find_stray(const RobotState& after, const model::Step& step) {
   const std::set<Cell> attached(step.attach.begin(), step.attach.end());
-  if (attached.empty()) {
+  if (attached.empty() || step.is_apart) {
     return std::nullopt;
   }
   for (const auto& piece : pieces_of(after, {}, {})) {

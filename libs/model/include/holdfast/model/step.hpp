@@ -35,6 +35,9 @@ struct Step {
   /// The modules come one by one, or go, nobody knows in which order: whatever part of them has
   /// come or gone, the robot has to be safe. Of steps that only attach, or only detach.
   bool is_any_order = false;
+  /// Attached modules may stand away from the robot if something supports them; else those that
+  /// touch neither it nor a new module that does are a mistake.
+  bool is_apart = false;
 
   friend bool operator==(const Step&, const Step&) = default;
 };

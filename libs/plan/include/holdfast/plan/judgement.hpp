@@ -60,6 +60,9 @@ verdict::Assessment assess_bent(const model::Robot& robot,
 /// What a planner asks of it.
 Judgement judgement_of(const verdict::Assessment& assessment);
 
+/// What two robots are together: the worse verdict, the larger load ratio, the smaller margin.
+Judgement both_of(const Judgement& a, const Judgement& b);
+
 /// The verdict's name, and that linear theory does not suffice where that is the reason.
 std::string verdict_text(const Judgement& judgement);
 

@@ -30,6 +30,9 @@ struct OrderTask {
   /// is safe, and each touches, and gets to its cell along, what was there before the step. More
   /// than 1 only with groups of one.
   std::size_t parallel_max = 1;
+  /// Whether a module may also come on the ground away from the others, so that states are in
+  /// pieces, each of which is judged by itself. Only for single modules.
+  bool in_pieces = false;
 };
 
 struct RobotOrderOptions {
