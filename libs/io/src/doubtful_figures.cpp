@@ -83,7 +83,8 @@ bool lies_flat(const Document& document) {
 std::vector<std::string> doubtful_figures(const Document& document) {
   std::vector<std::string> doubts;
   const model::Material& material = document.material;
-  if (material.facet_mm > material.pitch_mm) {
+  // Where modules are not as long as wide no facet is wider than its face.
+  if (material.facet_mm > material.pitch_mm && !document.extension.pitch_mm) {
     doubts.push_back(
         fmt::format("facets of {} mm are wider than the pitch of {} mm: feet reach beyond their "
                     "cells, and the support polygon with them",
