@@ -46,6 +46,9 @@ class Picture:
         self.robot = report.robot
         self.axes = axes
         self.pitch = self.robot.material['pitch_mm']
+        if not isinstance(self.pitch, float):
+            raise ValueError('the pitch differs by direction, which svg() and write_vtk() draw, '
+                             'and this picture does not')
         self.nodes = self.robot.positions
         self.obstacles = _bodies.obstacles_near(self.robot)
         self.said = _look.meanings(report)

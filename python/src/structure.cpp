@@ -277,6 +277,9 @@ py::dict material(const Structure& structure) {
   for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
     out[py::str(parameter.key)] = structure.document.material.*parameter.value;
   }
+  if (structure.document.extension.pitch_mm) {
+    out["pitch_mm"] = *structure.document.extension.pitch_mm;
+  }
   return out;
 }
 
@@ -287,7 +290,7 @@ py::array_t<double> directions(const Structure& structure) {
   py::array_t<double> out({static_cast<py::ssize_t>(range.size()), py::ssize_t{3}});
   auto rows = out.mutable_unchecked<2>();
   for (const base::Direction direction : range) {
-    const std::array<double, 3> vector = base::unit_vector(lattice, direction);
+    const std::array<double, 3> vector = base::heading(lattice, direction);
     for (py::ssize_t k = 0; k < 3; ++k) {
       rows(base::index(direction), k) = vector[static_cast<std::size_t>(k)];
     }

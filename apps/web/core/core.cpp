@@ -161,7 +161,7 @@ void add_facets(const model::Robot& robot, const verdict::Assessment& assessment
     out.integers.insert(out.integers.end(), {facet.module, base::index(facet.direction),
                                              facet.is_bonded() ? 1 : 0, state});
     const base::Vec6<double> force = is_known ? equilibrium.facet_force[i] : base::Vec6<double>{};
-    const auto normal = base::unit_vector(robot.lattice(), facet.direction);
+    const auto normal = base::heading(robot.lattice(), facet.direction);
     const double along = force[0] * normal[0] + force[1] * normal[1] + force[2] * normal[2];
     out.numbers.push_back(-along);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -431,6 +431,12 @@ Reply open_text(std::string_view text) {
     return failure(read.error());
   }
   const io::Document& document = read.value().document;
+  if (document.extension.pitch_mm) {
+    return failure({.code = base::ErrorCode::kUnsupported,
+                    .message = "the pitch differs by direction, expected one number: the page "
+                               "draws all modules as long as wide",
+                    .where = "/material/pitch_mm"});
+  }
   if (has_double_cell(document)) {
     const auto robot = io::make_robot(document);
     HOLDFAST_CHECK(!robot);

@@ -33,7 +33,10 @@ void note_masses(const Document& document, std::vector<std::string>& doubts) {
   for (const OwnParameters& own : document.extension.own) {
     masses.insert(own.mass_kg.value_or(material.mass_kg));
   }
-  const double cube_m3 = std::pow(material.pitch_mm / 1000, 3);
+  double cube_m3 = std::pow(material.pitch_mm / 1000, 3);
+  if (const auto& pitch = document.extension.pitch_mm) {
+    cube_m3 = (*pitch)[0] * (*pitch)[1] * (*pitch)[2] / 1e9;
+  }
   // The lowest and the highest are those that say most.
   for (const double mass : {*masses.begin(), *masses.rbegin()}) {
     const double density = mass / 1000 / cube_m3;
@@ -80,7 +83,8 @@ bool lies_flat(const Document& document) {
 std::vector<std::string> doubtful_figures(const Document& document) {
   std::vector<std::string> doubts;
   const model::Material& material = document.material;
-  if (material.facet_mm > material.pitch_mm) {
+  // Where modules are not as long as wide no facet is wider than its face.
+  if (material.facet_mm > material.pitch_mm && !document.extension.pitch_mm) {
     doubts.push_back(
         fmt::format("facets of {} mm are wider than the pitch of {} mm: feet reach beyond their "
                     "cells, and the support polygon with them",

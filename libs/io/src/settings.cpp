@@ -102,6 +102,9 @@ std::optional<std::string> take_setting(const Setting& setting, Document& docume
   }
   if (const model::MaterialParameter* const parameter = model::find_parameter(setting.key)) {
     take_number(*parameter, setting.value, document);
+    if (parameter->value == &model::Material::pitch_mm) {
+      document.extension.pitch_mm.reset();  // One number for all directions.
+    }
     return std::nullopt;
   }
   if (const auto cv = cv_of(setting.key)) {

@@ -134,6 +134,9 @@ inline constexpr auto kConnectionScatterKeys =
 /// The key of the material for the width of the facets of modules that are no cubes.
 inline constexpr std::string_view kFootKey = "foot_mm";
 
+/// A number of the material; a list of three by direction is part of the extension.
+inline constexpr std::string_view kPitchKey = "pitch_mm";
+
 /// The parameters in which a kind of modules may differ from the material.
 inline constexpr auto kKindKeys =
     joined(joined(joined(std::to_array<std::string_view>({"mass_kg"}), kClassStrengthKeys),

@@ -67,9 +67,12 @@ TEST(MaterialParameters, have_the_ranges_of_the_schema) {
   for (const MaterialParameter& parameter : kMaterialParameters) {
     ASSERT_TRUE(properties.contains(parameter.key)) << parameter.key;
     EXPECT_FALSE(not_yet.contains(parameter.key)) << parameter.key;
-    const auto& entry = properties[parameter.key];
-    const auto& range = entry.contains("$ref") ? schema["definitions"]["positive"] : entry;
-    EXPECT_EQ(entry.value("$ref", "#/definitions/positive"), "#/definitions/positive");
+    const auto& own = properties[parameter.key];
+    const auto& entry = own.contains("anyOf") ? own["anyOf"][0] : own;  // A number, or a list.
+    const auto& range =
+        entry.contains("$ref")
+            ? schema[nlohmann::json::json_pointer(entry["$ref"].get<std::string>().substr(1))]
+            : entry;
     EXPECT_EQ(range["type"], "number") << parameter.key;
     EXPECT_EQ(range["minimum"].get<double>(), parameter.lowest) << parameter.key;
     EXPECT_EQ(range["maximum"].get<double>(), parameter.highest) << parameter.key;

@@ -65,9 +65,9 @@ std::unique_ptr<System> System::make(const model::Robot& robot, const Options& o
 System::System(const model::Robot& robot, const Options& options)
     : robot_(robot),
       lattice_beam_(model::beam_section(robot.material()), robot.lattice()),
-      law_(lattice_beam_,
-           solver::ground_facet(robot, {.law = mechanics::ContactLaw::kUnilateral, .gamma = 0})),
-      beams_(lattice_beam_, robot.lattice(), robot.material().pitch_mm),
+      law_(solver::facet_law(robot, lattice_beam_,
+                             {.law = mechanics::ContactLaw::kUnilateral, .gamma = 0})),
+      beams_(lattice_beam_, robot.lattice()),
       pitch_(robot.material().pitch_mm),
       is_bonded_(options.is_bonded),
       thread_count_(options.thread_count),
@@ -140,8 +140,8 @@ Vec System::facet_stress(const Configuration& here, std::size_t facet,
                          const BeamDeformation& deformation) const {
   const solver::FacetState& state = here.facets[facet];
   const Vec trial = beam(state.direction).stress(deformation);
-  Vec stress =
-      base::multiply(mechanics::corrector(law_.ground(), state.state, state.is_held), trial);
+  Vec stress = base::multiply(
+      mechanics::corrector(law_.ground(state.direction), state.state, state.is_held), trial);
   if (!here.kept.empty()) {
     base::add_to(stress, here.kept[facet]);
   }
@@ -195,7 +195,8 @@ void System::add_facet_tangents(const Configuration& here, std::vector<Mat6<doub
   for (std::size_t i = 0; i < here.facets.size(); ++i) {
     const solver::FacetState& facet = here.facets[i];
     const mechanics::LargeBeam& own = beam(facet.direction);
-    Mat6<double> stiffness = mechanics::corrector(law_.ground(), facet.state, facet.is_held);
+    Mat6<double> stiffness =
+        mechanics::corrector(law_.ground(facet.direction), facet.state, facet.is_held);
     for (int column = 0; column < 6; ++column) {
       for (int row = 0; row < 6; ++row) {
         stiffness.at(row, column) *= own.stiffness()[at(column)];
@@ -266,7 +267,7 @@ std::vector<Vec> System::by_node(const std::vector<Vec>& by_module) const {
 double System::edge_strain(std::size_t connection) const {
   const Vec& e = deformations_[connection].strain;
   return (std::abs(e[2]) + robot_.material().facet_mm / 2 * std::sqrt(e[3] * e[3] + e[4] * e[4])) /
-         pitch_;
+         beam(connections_[connection].direction).length();
 }
 
 State System::state(const Configuration& here) const {
@@ -283,7 +284,7 @@ State System::state(const Configuration& here) const {
     state.middle_force[i] = own.middle_force(deformation, stress);
     state.load_ratio[i] = model::load_ratio(law, state.middle_force[i]).ratio;
     state.gap_mm[i] =
-        mechanics::gap_mm(law, lattice_beam_.stiffness(), stress,
+        mechanics::gap_mm(law, lattice_beam_.stiffness(connections_[i].direction), stress,
                           [](double x, double y) { return std::sqrt(x * x + y * y); });
     if (!state.worst || state.load_ratio[i] > state.load_ratio[*state.worst]) {
       state.worst = i;

@@ -10,7 +10,7 @@
 
 #include "holdfast/host/team.hpp"
 #include "holdfast/large/follow.hpp"
-#include "holdfast/mechanics/large_beams.hpp"
+#include "holdfast/model/large_beams.hpp"
 #include "holdfast/model/lattice_beam.hpp"
 #include "holdfast/solver/block_lu.hpp"
 
@@ -113,7 +113,7 @@ class System {
   const model::Robot& robot_;
   model::LatticeBeam<double> lattice_beam_;
   solver::FacetLaw<double> law_;
-  mechanics::LargeBeams beams_;
+  model::LargeBeams beams_;
   double pitch_;
   bool is_bonded_;
   int thread_count_;

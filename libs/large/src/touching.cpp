@@ -27,7 +27,8 @@ constexpr double kApartAtRest = 0.4;
 /// Bodies that are nearer than this share of the pitch touch at rest.
 constexpr double kTouching = 1e-6;
 
-/// The radius of the ball around any of the bodies, in pitches, that of a cube.
+/// The radius of the ball around any of the bodies, in pitches, that of a cube; of the longest
+/// pitch where they differ.
 constexpr double kRadius = 0.8661;
 
 double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -94,13 +95,19 @@ Bodies::Bodies(const model::Robot& robot, std::span<const model::Obstacle> obsta
       pitch_(robot.material().pitch_mm),
       obstacles_(obstacles.begin(), obstacles.end()),
       obstacle_index_(obstacles_) {
-  if (robot.lattice() == base::kFaceCentred) {
+  const base::Lattice shape = base::unstretched(robot.lattice());
+  if (shape == base::kFaceCentred) {
     shape_ = Shape::kSphere;
-  } else if (robot.lattice() == base::kHexagonal) {
+  } else if (shape == base::kHexagonal) {
     shape_ = Shape::kDisc;
-  } else if (robot.lattice() == base::kHexagonalPrism) {
+  } else if (shape == base::kHexagonalPrism) {
     shape_ = Shape::kPrism;
   }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const base::Cell one = {axis == 0 ? 1 : 0, axis == 1 ? 1 : 0, axis == 2 ? 1 : 0};
+    sides_[axis] = base::can_stretch(shape, axis) ? base::place_of(robot.lattice(), one)[axis] : 1;
+  }
+  radius_ = kRadius * pitch_ * std::ranges::max(sides_);
   const base::NodePlaces place(robot.lattice(), pitch_);
   for (const model::Module& module : robot.modules()) {
     places_.push_back(place(module.cell));
@@ -120,12 +127,12 @@ double Bodies::half_width(const Pose& pose, const Vector3& direction) const {
   const Vector3 d = in_body(pose, direction);
   double extent = 1;  // Of a sphere, in half pitches.
   if (shape_ == Shape::kCube) {
-    extent = std::abs(d[0]) + std::abs(d[1]) + std::abs(d[2]);
+    extent = sides_[0] * std::abs(d[0]) + sides_[1] * std::abs(d[1]) + sides_[2] * std::abs(d[2]);
   } else if (shape_ == Shape::kDisc) {
     extent = std::sqrt(d[0] * d[0] + d[2] * d[2]) + std::abs(d[1]);
   } else if (shape_ == Shape::kPrism) {  // A hexagon with corners at 30 degrees, and its height.
     const double side = std::numbers::sqrt3 / 2 * std::abs(d[0]) + std::abs(d[1]) / 2;
-    extent = 2 / std::numbers::sqrt3 * std::max(side, std::abs(d[1])) + std::abs(d[2]);
+    extent = 2 / std::numbers::sqrt3 * std::max(side, std::abs(d[1])) + sides_[2] * std::abs(d[2]);
   }
   return pitch_ / 2 * extent;
 }
@@ -136,7 +143,8 @@ Gap Bodies::above_floor(std::span<const Pose> poses) const {
     return least;
   }
   const base::NodePlaces place(robot_.lattice(), pitch_);
-  const double floor = place({0, 0, robot_.support_z()})[2] - pitch_ / 2;
+  const double floor =
+      place({0, 0, robot_.support_z()})[2] - robot_.step_mm(base::down(robot_.lattice())) / 2;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (robot_.modules()[i].cell.z <= robot_.support_z()) {
       continue;
@@ -200,7 +208,7 @@ Gap Bodies::between_bodies(std::span<const Pose> poses) const {
   for (const Pose& pose : poses) {
     const Vector3 turn = mechanics::rotation_vector(pose.rotation);
     way = std::max(way, std::sqrt(dot(pose.displacement, pose.displacement)) +
-                            kRadius * pitch_ * std::sqrt(dot(turn, turn)));
+                            radius_ * std::sqrt(dot(turn, turn)));
   }
   if (2 * way < (kApartAtRest - kNear) * pitch_) {
     return least;
@@ -218,7 +226,7 @@ Gap Bodies::between_bodies(std::span<const Pose> poses) const {
 
 void Bodies::add_modules(std::span<const Pose> poses, std::span<const Vector3> centres,
                          Gap& least) const {
-  const double reach = (2 * kRadius + kNear) * pitch_;
+  const double reach = 2 * radius_ + kNear * pitch_;
   const Grid grid(centres, reach);
   const Pose rest;
   for (std::size_t i = 0; i < poses.size(); ++i) {

@@ -53,6 +53,8 @@ class Bodies {
   const model::Robot& robot_;
   Shape shape_ = Shape::kCube;
   double pitch_;
+  Vector3 sides_{1, 1, 1};  ///< Of the bodies, in pitches.
+  double radius_ = 0;       ///< Of the ball around a body, mm.
   std::vector<model::Obstacle> obstacles_;
   model::ObstacleIndex obstacle_index_;
   std::vector<Vector3> places_;  ///< Of the nodes at rest, mm, by module.

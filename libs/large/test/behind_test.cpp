@@ -15,7 +15,7 @@
 #include "general_robot.hpp"
 #include "holdfast/base/rng.hpp"
 #include "holdfast/large/follow.hpp"
-#include "holdfast/mechanics/large_beams.hpp"
+#include "holdfast/model/large_beams.hpp"
 #include "holdfast/model/lattice_beam.hpp"
 #include "seeds.hpp"
 
@@ -168,7 +168,7 @@ struct Balance {
 Balance balance_of(const model::Robot& robot, const std::vector<mechanics::Pose>& poses,
                    double factor) {
   const model::LatticeBeam<double> linear(model::beam_section(robot.material()), robot.lattice());
-  const mechanics::LargeBeams beams(linear, robot.lattice(), robot.material().pitch_mm);
+  const model::LargeBeams beams(linear, robot.lattice());
   Balance balance{.rest = std::vector<base::Vec6<double>>(poses.size())};
   for (std::size_t i = 0; i < poses.size(); ++i) {
     base::add_times(balance.rest[i], factor, robot.loads()[i]);

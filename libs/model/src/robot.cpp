@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "holdfast/model/cell_index.hpp"
+#include "holdfast/model/lattice_beam.hpp"
 #include "robot_faults.hpp"
 
 namespace holdfast::model {
@@ -59,10 +60,27 @@ std::array<double, 3> gravity_of(const RobotSpec& spec) {
 
 double foot_half_width(const RobotSpec& spec) {
   const Material& material = spec.material;
-  if (spec.lattice == base::kCubic) {
+  if (base::unstretched(spec.lattice) == base::kCubic) {
     return material.facet_mm / 2;
   }
   return spec.foot_mm.value_or(material.pitch_mm / 2) / 2;
+}
+
+/// The width of a facet in a direction: where modules are not as long as wide, no more than the
+/// shorter side of their faces there.
+double width_on_face(double width_mm, const Material& material, const base::Lattice& lattice,
+                     base::Direction direction) {
+  if (!base::is_stretched(lattice)) {
+    return width_mm;
+  }
+  const std::array<double, 3> along = base::heading(lattice, direction);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (along[axis] == 0) {
+      const double side = base::root(base::basis_square(lattice, axis));
+      width_mm = std::min(width_mm, material.pitch_mm * side);
+    }
+  }
+  return width_mm;
 }
 
 /// The weight of a mass, and its moment about the carrier's node.
@@ -90,7 +108,8 @@ ModuleKind default_kind(const Material& material, const base::Lattice& lattice) 
   ModuleKind kind{.mass_kg = material.mass_kg};
   for (const base::Direction direction : base::directions(lattice)) {
     const auto connector = model::connector(material, base::connector_class(lattice, direction));
-    kind.connectors.push_back({.strength_n = connector.strength, .lever_mm = connector.width / 2});
+    const double width = width_on_face(connector.width, material, lattice, direction);
+    kind.connectors.push_back({.strength_n = connector.strength, .lever_mm = width / 2});
   }
   return kind;
 }
@@ -132,6 +151,9 @@ base::Result<Robot> Robot::create_part(const RobotSpec& spec, RobotPart part, in
     return base::bad_input(*fault);
   }
   robot.part_ = std::move(part);
+  if (base::is_stretched(robot.lattice_)) {
+    robot.foot_half_width_mm_ = -host::max(robot.ranks(), -robot.foot_half_width_mm_);
+  }
   const std::size_t own_count = robot.own_count();
   std::erase_if(robot.facets_,
                 [&](const Facet& facet) { return base::at(facet.module) >= own_count; });
@@ -303,6 +325,13 @@ std::optional<std::string> Robot::touch(const RobotSpec& spec) {
     }
   }
   has_bonded_facets_ = std::ranges::any_of(facets_, &Facet::is_bonded);
+  if (base::is_stretched(lattice_)) {  // All facets are as wide as the narrowest.
+    double width = 2 * foot_half_width_mm_;
+    for (const Facet& facet : facets_) {
+      width = width_on_face(width, material_, lattice_, facet.direction);
+    }
+    foot_half_width_mm_ = width / 2;
+  }
   if (lost_count != spec.lost_facets.size()) {
     return fmt::format("{} facets are lost, but {} of them touch something",
                        spec.lost_facets.size(), lost_count);
@@ -462,25 +491,37 @@ FloorRule::FloorRule(const Robot& robot) : level_(robot.barring_level()) {
 }
 
 double load_ratio_per_energy_norm(const Robot& robot) {
-  const auto beam = mechanics::beam_stiffness(beam_section(robot.material()));
-  const double bend = std::max(beam.bend_x, beam.bend_y) / 4;
-  const double shear = std::max(beam.shear_x, beam.shear_y);
+  const LatticeBeam<double> beams(beam_section(robot.material()), robot.lattice());
+  double axial = 0;
+  double bend = 0;
+  double shear = 0;
+  double twist = 0;
+  for (const base::Direction direction : base::facet_directions(robot.lattice())) {
+    const auto& beam = beams.stiffness(direction);
+    axial = std::max(axial, beam.axial);
+    bend = std::max({bend, beam.bend_x / 4, beam.bend_y / 4});
+    shear = std::max({shear, beam.shear_x, beam.shear_y});
+    twist = std::max(twist, beam.twist);
+  }
   const auto squared = [](double value) { return value * value; };
   double largest = 0;
   for (const ConnectorLaw& law : robot.connectors()) {
-    const double opens = (beam.axial + bend / squared(law.lever_mm)) / squared(law.strength_n);
+    const double opens = (axial + bend / squared(law.lever_mm)) / squared(law.strength_n);
     const double mu = law.friction.value_or(ConnectorLaw::kUnlimited);
     const double slips =
-        (beam.axial + shear / squared(mu) + beam.twist / squared(mu * law.torsion_radius_mm)) /
+        (axial + shear / squared(mu) + twist / squared(mu * law.torsion_radius_mm)) /
         squared(law.strength_n);
     largest = std::max({largest, opens, slips, shear / squared(law.shear_strength_n),
-                        beam.twist / squared(law.torsion_strength_nmm)});
+                        twist / squared(law.torsion_strength_nmm)});
   }
   return std::sqrt(largest);
 }
 
 std::optional<std::string> find_beyond_paper(const Robot& robot) {
   const auto& [x, y, z] = robot.gravity();
+  if (base::is_stretched(robot.lattice())) {
+    return "a pitch by direction";
+  }
   if (robot.lattice() != base::kCubic) {
     return "a lattice other than the cubic one";
   }

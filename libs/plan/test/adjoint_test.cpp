@@ -103,9 +103,9 @@ double energy_between(const model::Robot& target, const ElementSet& state, const
 std::array<double, 3> facet_force(const model::Robot& target, const model::Facet& facet,
                                   const Displacements& u) {
   const model::LatticeBeam<double> beam(model::beam_section(target.material()), target.lattice());
-  const auto law = mechanics::ground_facet<double>(beam.stiffness(), target.material().pitch_mm,
-                                                   2 * target.foot_half_width_mm(), 0,
-                                                   mechanics::ContactLaw::kRegularised);
+  const auto law = mechanics::ground_facet<double>(
+      beam.stiffness(facet.direction), target.material().pitch_mm, 2 * target.foot_half_width_mm(),
+      0, mechanics::ContactLaw::kRegularised);
   const auto force =
       mechanics::trial_force(law, beam.to_local(facet.direction, u[at(facet.module)]));
   return {force[2], force[3], force[4]};

@@ -38,7 +38,7 @@ TEST(StuckCore, shortens_a_fixed_column_by_one_beam_for_each_module) {
   const auto answer = core->answer(loads, 1e-6);
   ASSERT_TRUE(answer);
   const double axial = model::LatticeBeam<double>(model::beam_section(spec.material), spec.lattice)
-                           .stiffness()
+                           .stiffness(base::Direction::kPlusZ)
                            .axial;
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_NEAR(answer->displacement[i][2], -7 / axial * static_cast<double>(i), 1e-12) << i;

@@ -283,6 +283,9 @@ bool needs_environment(const model::Robot& robot, const model::Robot* step_end) 
 }
 
 std::optional<std::string> find_unknown_to_modules(const model::Robot& robot) {
+  if (base::is_stretched(robot.lattice())) {
+    return "a pitch by direction";
+  }
   for (const model::Facet& facet : robot.facets()) {
     // Safe angles are of facets: robots balanced on an edge between two points would count as safe.
     if (!facet.is_bonded() && robot.foot_half_width_mm() == 0) {

@@ -10,7 +10,7 @@ LinearSystem::LinearSystem(const model::Robot& robot)
     : robot_(robot),
       beam_(model::beam_section(robot.material()), robot.lattice()),
       loads_(robot.loads()),
-      law_(beam_, {}) {
+      law_(facet_law(robot, beam_, {})) {
   facets_.reserve(robot.facets().size());
   for (const model::Facet& facet : robot.facets()) {
     facets_.push_back({.module = base::at(facet.module),
@@ -20,14 +20,13 @@ LinearSystem::LinearSystem(const model::Robot& robot)
   }
 }
 
-mechanics::GroundFacet<double> ground_facet(const model::Robot& robot,
-                                            const ContactOptions& contact) {
-  return mechanics::ground_facet(model::beam_section(robot.material()),
-                                 2 * robot.foot_half_width_mm(), contact.gamma, contact.law);
+FacetLaw<double> facet_law(const model::Robot& robot, const model::LatticeBeam<double>& beam,
+                           const ContactOptions& contact) {
+  return {beam, 2 * robot.foot_half_width_mm(), contact.gamma, contact.law};
 }
 
 void LinearSystem::set_law(const ContactOptions& contact) {
-  law_ = {beam_, ground_facet(robot_, contact)};
+  law_ = facet_law(robot_, beam_, contact);
   for (FacetState& facet : facets_) {
     facet.state = {};
     facet.is_held = true;

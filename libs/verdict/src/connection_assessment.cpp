@@ -187,11 +187,17 @@ constexpr double kDirectFactor = 10;
 
 /// The ratio of a beam's largest stiffness to its least, all as forces by millimetres at its ends.
 double stiffness_spread(const model::Robot& robot) {
-  const mechanics::BeamSection<double> section = model::beam_section(robot.material());
-  const auto k = mechanics::beam_stiffness(section);
-  const double square = section.length * section.length;
-  const auto [least, most] = std::minmax(
-      {k.shear_x, k.shear_y, k.axial, k.bend_x / square, k.bend_y / square, k.twist / square});
+  const model::LatticeBeam<double> beams(model::beam_section(robot.material()), robot.lattice());
+  double least = std::numeric_limits<double>::infinity();
+  double most = 0;
+  for (const base::Direction direction : base::facet_directions(robot.lattice())) {
+    const auto& k = beams.stiffness(direction);
+    const double square = beams.length(direction) * beams.length(direction);
+    const auto [low, high] = std::minmax(
+        {k.shear_x, k.shear_y, k.axial, k.bend_x / square, k.bend_y / square, k.twist / square});
+    least = std::min(least, low);
+    most = std::max(most, high);
+  }
   return most / least;
 }
 

@@ -41,7 +41,11 @@ ConnectionLaws::ConnectionLaws(const model::Robot& robot)
     }
   }
   for (const base::Direction direction : base::directions(robot.lattice())) {
-    steps_.push_back(base::unit_vector<base::DoubleDouble>(robot.lattice(), direction));
+    auto step = base::heading<base::DoubleDouble>(robot.lattice(), direction);
+    for (base::DoubleDouble& part : step) {
+      part = part * base::DoubleDouble(base::step_length(robot.lattice(), direction));
+    }
+    steps_.push_back(step);
   }
 }
 
@@ -74,7 +78,7 @@ double ConnectionLaws::gap_mm(const model::Connection& pair, const Vecs& high,
       low.empty()
           ? beam_.middle_force(pair.direction, high[base::at(pair.a)], high[base::at(pair.b)])
           : beam_.middle_force(pair.direction, relative_motion(pair, high, low), Vec{});
-  return mechanics::gap_mm(robot_.connector(pair), beam_.stiffness(), force,
+  return mechanics::gap_mm(robot_.connector(pair), beam_.stiffness(pair.direction), force,
                            [](double x, double y) { return std::hypot(x, y); });
 }
 
@@ -88,7 +92,8 @@ base::Vec6<double> ConnectionLaws::relative_motion(const model::Connection& pair
     second[k] = {high[b][k], low[b][k]};
     motion[k] = base::DoubleDouble(high[a][k], low[a][k]) - second[k];
   }
-  // The second turns about itself, and takes the first along on a lever of one pitch backwards.
+  // The second turns about itself, and takes the first along on a lever of the beam's length
+  // backwards.
   const auto& step = steps_[static_cast<std::size_t>(base::index(pair.direction))];
   const base::DoubleDouble pitch = robot_.material().pitch_mm;
   for (std::size_t k = 0; k < 3; ++k) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "holdfast/host/team.hpp"
-#include "holdfast/mechanics/large_beams.hpp"
+#include "holdfast/model/large_beams.hpp"
 #include "holdfast/model/lattice_beam.hpp"
 #include "stability.hpp"
 
@@ -44,9 +44,13 @@ class Beams {
  public:
   explicit Beams(const model::Robot& robot)
       : linear_(model::beam_section(robot.material()), robot.lattice()),
-        facet_(
-            solver::ground_facet(robot, {.law = mechanics::ContactLaw::kUnilateral, .gamma = 0})),
-        large_(linear_, robot.lattice(), robot.material().pitch_mm) {}
+        facet_(solver::facet_law(robot, linear_,
+                                 {.law = mechanics::ContactLaw::kUnilateral, .gamma = 0})),
+        large_(linear_, robot.lattice()) {}
+
+  // facet_ keeps a reference to linear_.
+  Beams(const Beams&) = delete;
+  Beams& operator=(const Beams&) = delete;
 
   Vec6<double> first(base::Direction direction, const Vec6<double>& p,
                      const Vec6<double>& q) const {
@@ -68,28 +72,30 @@ class Beams {
   double reserve(const model::Facet& facet, const Vec6<double>& u1, const Vec6<double>& u2,
                  double factor) const {
     const auto trial = [&](const Vec6<double>& u) {
-      return mechanics::trial_force(facet_, linear_.to_local(facet.direction, u));
+      return mechanics::trial_force(facet_.ground(facet.direction),
+                                    linear_.to_local(facet.direction, u));
     };
     Vec6<double> stress = trial(u1);
     base::add_times(stress, factor, trial(u2));
     base::add_times(stress, factor, large_[facet.direction].second_order_stress(u1, {}));
     const double moment = std::max(std::abs(stress[3]), std::abs(stress[4]));
-    const double held = -stress[2] * facet_.half_width;
+    const double held = -stress[2] * facet_.ground(facet.direction).half_width;
     return held > 0 ? moment / held : std::numeric_limits<double>::infinity();
   }
 
   /// The strain at the edge of a facet under a stress.
-  double edge_strain(const Vec6<double>& stress, const model::Material& material) const {
-    const Vec6<double>& k = large_[base::Direction::kPlusX].stiffness();
+  double edge_strain(base::Direction direction, const Vec6<double>& stress,
+                     const model::Material& material) const {
+    const Vec6<double>& k = large_[direction].stiffness();
     return (std::abs(stress[2] / k[2]) +
             material.facet_mm / 2 * norm_of(stress[3] / k[3], stress[4] / k[4])) /
-           material.pitch_mm;
+           large_[direction].length();
   }
 
  private:
   model::LatticeBeam<double> linear_;
-  mechanics::GroundFacet<double> facet_;
-  mechanics::LargeBeams large_;
+  solver::FacetLaw<double> facet_;
+  model::LargeBeams large_;
 };
 
 /// The largest numbers of some connections.
@@ -116,7 +122,8 @@ Largest largest_of_all(const model::Robot& robot, const Beams& beams, const Disp
       const std::size_t q = base::at(pair.b);
       const Vec6<double> stress = beams.first(pair.direction, u1[p], u1[q]);
       largest.first = larger(largest.first, model::load_ratio(robot.connector(pair), stress).ratio);
-      largest.strain = larger(largest.strain, beams.edge_strain(stress, robot.material()));
+      largest.strain =
+          larger(largest.strain, beams.edge_strain(pair.direction, stress, robot.material()));
       if (!u2.empty()) {
         Vec6<double> both = stress;
         base::add_times(both, factor, beams.second(pair.direction, u1[p], u1[q], u2[p], u2[q]));
@@ -228,7 +235,8 @@ double column_factor(const model::Robot& robot) {
   const double layers = static_cast<double>(high.cell.z - low.cell.z) + 1;
   const double width = static_cast<double>(robot.modules().size()) / layers;
   const model::Material& material = robot.material();
-  const double area = material.pitch_mm * material.pitch_mm;
+  const double height = base::step_length(robot.lattice(), base::down(robot.lattice()));
+  const double area = material.pitch_mm * material.pitch_mm / (height * height);
   // E I / (q l^3) of a square of `width` modules in each layer, whose weights are q l in all.
   return kGreenhill * material.elastic_modulus_mpa * width * width * area / 12 /
          (force * layers * layers);

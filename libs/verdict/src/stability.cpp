@@ -46,8 +46,8 @@ Heights heights(const model::Robot& robot) {
   double floor_mm = -std::numeric_limits<double>::infinity();
   if (!robot.facets().empty()) {
     const model::Facet& facet = robot.facets().front();
-    floor_mm =
-        node_mm(robot.modules()[base::at(facet.module)].cell)[2] - robot.material().pitch_mm / 2;
+    floor_mm = node_mm(robot.modules()[base::at(facet.module)].cell)[2] -
+               robot.step_mm(base::down(robot.lattice())) / 2;
   }
   floor_mm = host::max(robot.ranks(), floor_mm);
   return {.floor_mm = floor_mm, .centre_of_mass_mm = model::mass_of(robot).centre_mm[2] - floor_mm};
@@ -194,10 +194,15 @@ class FacetErrors {
     largest = host::max(robot.ranks(), largest);
     const double energy = equilibrium.energy_error;
     const double spread = std::isfinite(energy) ? kEnergyFactor * energy : 0;
-    const auto springs = mechanics::beam_stiffness(model::beam_section(robot.material()));
-    sideways_n_ =
-        kForceRounding * largest + spread * std::sqrt(std::max(springs.shear_x, springs.shear_y));
-    normal_n_ = kForceRounding * largest + spread * std::sqrt(springs.axial);
+    double shear = 0;
+    double axial = 0;
+    for (const base::Direction direction : base::facet_directions(robot.lattice())) {
+      const auto& springs = beam.stiffness(direction);
+      shear = std::max({shear, springs.shear_x, springs.shear_y});
+      axial = std::max(axial, springs.axial);
+    }
+    sideways_n_ = kForceRounding * largest + spread * std::sqrt(shear);
+    normal_n_ = kForceRounding * largest + spread * std::sqrt(axial);
   }
 
   double sideways_n() const { return sideways_n_; }
@@ -228,6 +233,7 @@ struct RankedSlip {
 /// bound for a robot that winds, whose paths are longer.
 double lean_error_mm(const model::Robot& robot, const Equilibrium& equilibrium) {
   constexpr double kRoundingShare = 1e-9;
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
   std::array<double, 6> most;  // Coordinates, and less them.
   most.fill(std::numeric_limits<double>::lowest());
   double largest = 0;
@@ -247,12 +253,20 @@ double lean_error_mm(const model::Robot& robot, const Equilibrium& equilibrium) 
     value = host::max(robot.ranks(), value);
     steps += value;
   }
-  const mechanics::BeamSection<double> section = model::beam_section(robot.material());
-  const auto springs = mechanics::beam_stiffness(section);
-  const double reach = steps * section.length;
-  const double flexibility =
-      steps * (1 / springs.axial + 1 / std::min(springs.shear_x, springs.shear_y) +
-               reach * reach / std::min({springs.bend_x, springs.bend_y, springs.twist}));
+  const model::LatticeBeam<double> beams(model::beam_section(robot.material()), robot.lattice());
+  double longest = 0;
+  double axial = kInfinite;
+  double shear = kInfinite;
+  double turn = kInfinite;
+  for (const base::Direction direction : base::facet_directions(robot.lattice())) {
+    const auto& springs = beams.stiffness(direction);
+    longest = std::max(longest, beams.length(direction));
+    axial = std::min(axial, springs.axial);
+    shear = std::min({shear, springs.shear_x, springs.shear_y});
+    turn = std::min({turn, springs.bend_x, springs.bend_y, springs.twist});
+  }
+  const double reach = steps * longest;
+  const double flexibility = steps * (1 / axial + 1 / shear + reach * reach / turn);
   const double energy = equilibrium.energy_error;
   return kRoundingShare * host::max(robot.ranks(), largest) +
          (std::isfinite(energy) ? kEnergyFactor * energy * std::sqrt(flexibility) : 0);

@@ -34,13 +34,13 @@ constexpr double kBevel = 0.1;
 constexpr double kUnmoved = 0.1;
 constexpr double kNudge = 0.02;
 
-/// The sides of a module that are upright, as unit vectors.
+/// The ways to the neighbours beside a module, in pitches.
 std::vector<fall::Point> sides_of(const base::Lattice& lattice) {
   std::vector<fall::Point> sides;
   for (const base::Direction direction : base::directions(lattice)) {
-    const auto unit = base::place_of(lattice, lattice.steps[at(base::index(direction))]);
-    if (std::abs(unit[2]) < 0.5) {
-      sides.push_back(unit);
+    const auto way = base::way_to_neighbour(lattice, direction);
+    if (base::heading(lattice, direction)[2] == 0) {
+      sides.push_back(way);
     }
   }
   return sides;
@@ -61,24 +61,27 @@ std::vector<fall::Point> corners_of(const model::Robot& robot) {
     return corners;
   }
   const double half = robot.material().pitch_mm / 2;
+  const double top = robot.step_mm(base::down(lattice)) / 2;
   const double foot = robot.foot_half_width_mm();
   const std::vector<fall::Point> sides = sides_of(lattice);
   const bool has_feet = sides.size() != 4 || foot < half;
   const double angle_cosine = std::cos(2 * std::numbers::pi / static_cast<double>(sides.size()));
   for (std::size_t i = 0; i < sides.size(); ++i) {
     for (std::size_t j = i + 1; j < sides.size(); ++j) {
-      const double cosine = sides[i][0] * sides[j][0] + sides[i][1] * sides[j][1];
+      const double cosine =
+          (sides[i][0] * sides[j][0] + sides[i][1] * sides[j][1]) /
+          (std::hypot(sides[i][0], sides[i][1]) * std::hypot(sides[j][0], sides[j][1]));
       if (std::abs(cosine - angle_cosine) < 0.01) {
         const double scale = half / (1 + cosine);
         add_corners(scale * (sides[i][0] + sides[j][0]), scale * (sides[i][1] + sides[j][1]),
-                    has_feet ? half * (1 - 2 * kBevel) : half, corners);
+                    has_feet ? top * (1 - 2 * kBevel) : top, corners);
       }
     }
   }
   for (const double x : {-foot, foot}) {
     for (const double y : {-foot, foot}) {
       if (has_feet) {
-        add_corners(x, y, half, corners);
+        add_corners(x, y, top, corners);
       }
     }
   }
@@ -220,7 +223,7 @@ fall::Scene empty_scene(const model::RobotSpec& spec, const model::Robot& robot)
   }
   if (robot.has_floor()) {
     const auto level = base::node_place(robot.lattice(), {0, 0, robot.support_z()})[2];
-    scene.floor_mm = (level - 0.5) * pitch;
+    scene.floor_mm = level * pitch - robot.step_mm(base::down(robot.lattice())) / 2;
   }
   return scene;
 }

@@ -72,7 +72,7 @@ void write_loss(io::JsonStream& json, const model::Robot& robot, const Loss& los
     return;
   }
   json.begin_array();
-  for (const double component : base::unit_vector(robot.lattice(), *loss.direction)) {
+  for (const double component : base::heading(robot.lattice(), *loss.direction)) {
     json.value(component);
   }
   json.end_array();

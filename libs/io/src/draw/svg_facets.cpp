@@ -126,7 +126,7 @@ std::string draw_state(const Scene& scene, const FacetLook& look) {
                          "\" stroke-width=\"3.4\"");
     for (std::size_t i = 0; i < scene.robot.facets().size(); ++i) {
       const model::Facet& facet = scene.robot.facets()[i];
-      const Place way = base::unit_vector(scene.robot.lattice(), facet.direction);
+      const Place way = base::heading(scene.robot.lattice(), facet.direction);
       if (state_of(scene, i) != look.state ||
           (scene.projection.axes.nearness(way) > 0) != is_near) {
         continue;

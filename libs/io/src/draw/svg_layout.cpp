@@ -239,7 +239,8 @@ double Scene::ground_z() const {
 }
 
 double Scene::floor_z() const {
-  return base::node_place(robot.lattice(), {0, 0, robot.support_z()})[2] - 0.5;
+  return base::node_place(robot.lattice(), {0, 0, robot.support_z()})[2] -
+         base::step_length(robot.lattice(), base::down(robot.lattice())) / 2;
 }
 
 bool Scene::has_grid() const {
@@ -266,7 +267,7 @@ LatticePoint Scene::floor_point(double x, double y) const {
 LatticePoint Scene::facet_centre(std::int32_t module, base::Direction direction) const {
   const base::Cell& cell = robot.modules()[static_cast<std::size_t>(module)].cell;
   return LatticePoint(sum(base::node_place(robot.lattice(), cell),
-                          scaled(0.5, base::unit_vector(robot.lattice(), direction))));
+                          scaled(0.5, base::way_to_neighbour(robot.lattice(), direction))));
 }
 
 LatticePoint Scene::on_ground(verdict::PlanPoint point) const {

@@ -54,7 +54,7 @@ std::vector<Place> face_across(const base::Lattice& lattice, base::Direction dir
     return square_across(static_cast<std::size_t>(base::index(direction)) / 2);
   }
   if (body_of(lattice) == Body::kCell) {
-    const Place middle = scaled(-0.5, base::unit_vector(lattice, direction));
+    const Place middle = scaled(-0.5, base::way_to_neighbour(lattice, direction));
     for (ShapeFace& face : cell_faces(lattice)) {
       if (face.direction == direction) {
         std::ranges::transform(face.corners, face.corners.begin(),

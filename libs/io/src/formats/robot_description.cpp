@@ -54,6 +54,15 @@ std::vector<TreeJoint> find_tree(const model::Robot& robot) {
   return tree;
 }
 
+/// The lengths of a module that fills its cell, m.
+Vector sides_of(const base::Lattice& lattice, double pitch) {
+  Vector sides = base::place_of(lattice, {1, 1, 1});
+  if (base::unstretched(lattice) != base::kCubic) {
+    sides = {1, 1, sides[2]};
+  }
+  return {pitch * sides[0], pitch * sides[1], pitch * sides[2]};
+}
+
 /// The moments of inertia of a solid module about its centre, kg m^2.
 Vector inertia_of(const base::Lattice& lattice, double pitch, double mass) {
   const double square = mass * pitch * pitch;
@@ -64,11 +73,16 @@ Vector inertia_of(const base::Lattice& lattice, double pitch, double mass) {
     const double across = square * (3.0 / 4 + kDiscDepth * kDiscDepth) / 12;
     return {across, square / 8, across};
   }
-  if (lattice == base::kHexagonalPrism) {  // Its sides are 1 / sqrt(3) pitches long.
-    const double across = square * (5.0 / 72 + 1.0 / 12);
+  const Vector sides = sides_of(lattice, pitch);
+  if (base::unstretched(lattice) == base::kHexagonalPrism) {  // Sides of 1 / sqrt(3) pitches.
+    const double across = square * 5.0 / 72 + mass * sides[2] * sides[2] / 12;
     return {across, across, square * 5 / 36};
   }
-  return {square / 6, square / 6, square / 6};
+  const auto about = [&](std::size_t i, std::size_t k) {
+    return mass * (sides[i] * sides[i] + sides[k] * sides[k]) / 12;
+  };
+  return base::is_stretched(lattice) ? Vector{about(1, 2), about(0, 2), about(0, 1)}
+                                     : Vector{square / 6, square / 6, square / 6};
 }
 
 /// The element of a module's shape. A prism is drawn as the cylinder in it.
@@ -79,11 +93,13 @@ std::string geometry(const base::Lattice& lattice, double pitch, RobotDescriptio
     return is_urdf ? fmt::format("<sphere radius=\"{}\"/>", radius)
                    : fmt::format("<sphere><radius>{}</radius></sphere>", radius);
   }
-  if (body_of(lattice) == Body::kCell && lattice != base::kHexagonalPrism) {
-    return is_urdf ? fmt::format("<box size=\"{0} {0} {0}\"/>", pitch)
-                   : fmt::format("<box><size>{0} {0} {0}</size></box>", pitch);
+  const Vector sides = sides_of(lattice, pitch);
+  if (base::unstretched(lattice) == base::kCubic) {
+    const std::string size = fmt::format("{} {} {}", sides[0], sides[1], sides[2]);
+    return is_urdf ? fmt::format("<box size=\"{}\"/>", size)
+                   : fmt::format("<box><size>{}</size></box>", size);
   }
-  const double length = body_of(lattice) == Body::kDisc ? kDiscDepth * pitch : pitch;
+  const double length = body_of(lattice) == Body::kDisc ? kDiscDepth * pitch : sides[2];
   return is_urdf ? fmt::format("<cylinder radius=\"{}\" length=\"{}\"/>", radius, length)
                  : fmt::format("<cylinder><radius>{}</radius><length>{}</length></cylinder>",
                                radius, length);

@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 
 #include "holdfast/io/lattice_names.hpp"
 #include "vocabulary.hpp"
@@ -143,15 +144,39 @@ std::size_t read_choice(JsonReading& reading, const Json& value, const JsonPlace
   return static_cast<std::size_t>(found - names.begin());
 }
 
+namespace {
+
+/// Reads the pitches along the axes; where they are one number, that is the material's.
+void read_pitches(JsonReading& reading, const Json& value, const JsonPlace& place) {
+  const std::array<double, 3> pitches =
+      reading.vector(value, place, "three numbers, such as [8, 8, 9.6]");
+  for (std::size_t axis = 0; axis < pitches.size() && !reading.has_failed(); ++axis) {
+    if (const auto fault = model::find_fault(*model::find_parameter(kPitchKey), pitches[axis])) {
+      reading.fail(place.at(axis), *fault);
+    }
+  }
+  const auto [least, most] = std::ranges::minmax(pitches);
+  if (!reading.has_failed() && most > base::kStretchMax * least) {
+    reading.fail(place, fmt::format("the longest pitch is {} times the shortest, expected up to {}",
+                                    most / least, base::kStretchMax));
+  }
+  reading.document.material.pitch_mm = least;
+  reading.document.extension.pitch_mm = least < most ? std::optional(pitches) : std::nullopt;
+}
+
+}  // namespace
+
 bool is_material_extension(std::string_view key) {
-  return key == kFootKey || is_scatter_key(key) ||
+  return key == kPitchKey || key == kFootKey || is_scatter_key(key) ||
          std::ranges::find(kConnectorKeys, key) != kConnectorKeys.end();
 }
 
 void read_material_extension(JsonReading& reading, const std::string& key, const Json& value,
                              const JsonPlace& place) {
   Extension& extension = reading.document.extension;
-  if (key == kFootKey) {
+  if (key == kPitchKey) {
+    read_pitches(reading, value, place);
+  } else if (key == kFootKey) {
     extension.foot_mm = read_not_negative(reading, value, place);
   } else if (is_scatter_key(key)) {
     read_scatter(reading, key, value, place, extension.scatter);

@@ -21,17 +21,7 @@ namespace {
 using base::Cell;
 
 std::array<double, 3> vector(JsonReading& reading, const Json& value, const JsonPlace& place) {
-  const Json::array_t& array =
-      reading.elements(value, place, "three numbers, such as [0, 0, -9.81]");
-  std::array<double, 3> numbers{};
-  if (array.size() != numbers.size()) {
-    reading.fail(place, fmt::format("expected three numbers, found an array of {}", array.size()));
-    return numbers;
-  }
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    numbers[i] = reading.number(array[i], place.at(i));
-  }
-  return numbers;
+  return reading.vector(value, place, "three numbers, such as [0, 0, -9.81]");
 }
 
 /// Calls take(element, its place) for every element of an array that takes up cells.

@@ -208,6 +208,10 @@ void add_plan_members(Items& members, const Extension& extension) {
 
 Items material_extension_members(const Extension& extension) {
   Items members;
+  if (extension.pitch_mm) {
+    const auto& [x, y, z] = *extension.pitch_mm;
+    members.push_back(member(kPitchKey, row({json_text(x), json_text(y), json_text(z)})));
+  }
   add_connector_members(members, extension.connectors);
   if (extension.foot_mm) {
     members.push_back(member(kFootKey, json_text(*extension.foot_mm)));

@@ -203,9 +203,11 @@ void JsonReader::read_material(const Json& value, const JsonPlace& place) {
   for (const auto& [key, member] :
        reading_.members(value, place, "an object of numbers, such as {\"mass_kg\": 0.061}")) {
     const JsonPlace here = place.at(key);
-    if (const auto* const parameter = model::find_parameter(key)) {
+    const bool is_by_direction = key == kPitchKey && member.is_array();
+    if (const auto* const parameter = model::find_parameter(key);
+        parameter != nullptr && !is_by_direction) {
       take_number(*parameter, reading_.number(member, here), reading_.document);
-    } else if (is_material_extension(key)) {
+    } else if (is_by_direction || is_material_extension(key)) {
       if (allows(here)) {
         read_material_extension(reading_, key, member, here);
       }

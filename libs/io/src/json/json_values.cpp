@@ -150,6 +150,20 @@ std::array<std::int32_t, 3> JsonReading::triple(const Json& value, const JsonPla
   return triple;
 }
 
+std::array<double, 3> JsonReading::vector(const Json& value, const JsonPlace& place,
+                                          std::string_view expected) {
+  const Json::array_t& array = elements(value, place, expected);
+  std::array<double, 3> numbers{};
+  if (array.size() != numbers.size()) {
+    fail(place, fmt::format("expected three numbers, found an array of {}", array.size()));
+    return numbers;
+  }
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    numbers[i] = number(array[i], place.at(i));
+  }
+  return numbers;
+}
+
 base::Cell JsonReading::cell(const Json& value, const JsonPlace& place) {
   const auto [x, y, z] = triple(value, place, kCoordinateRange);
   return {x, y, z};

@@ -54,6 +54,10 @@ class JsonReading : public Reading {
   double number(const Json& value, const JsonPlace& place);
   std::int32_t integer(const Json& value, const JsonPlace& place, IntegerRange range);
   base::Cell cell(const Json& value, const JsonPlace& place);
+
+  /// Three numbers; `expected` says so for people, with an example.
+  std::array<double, 3> vector(const Json& value, const JsonPlace& place,
+                               std::string_view expected);
   Color color(const Json& value, const JsonPlace& place);
 
   /// Fails if a box between these corners has no cell.

@@ -104,8 +104,10 @@ Items material_members(const Document& document) {
   const model::Material defaults = default_material(document);
   Items members;
   for (const model::MaterialParameter& parameter : model::kMaterialParameters) {
-    const bool is_overridden = parameter.value == &model::Material::gravity_m_s2 &&
-                               document.extension.gravity_m_s2.has_value();
+    const bool is_overridden =
+        (parameter.value == &model::Material::gravity_m_s2 &&
+         document.extension.gravity_m_s2.has_value()) ||
+        (parameter.value == &model::Material::pitch_mm && document.extension.pitch_mm.has_value());
     if (!is_overridden && is_said(parameter, defaults, document)) {
       members.push_back(member(parameter.key, json_text(material.*parameter.value)));
     }

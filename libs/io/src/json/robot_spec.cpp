@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -66,6 +67,29 @@ std::optional<base::Error> find_fault(const model::Material& material, const Jso
   return std::nullopt;
 }
 
+/// The pitch that a lattice is stretched from: that along axes which it cannot be stretched along.
+double pitch_unit(const Extension& extension) {
+  const std::array<double, 3>& pitches = *extension.pitch_mm;
+  return base::can_stretch(extension.lattice, 0) ? std::ranges::min(pitches) : pitches[0];
+}
+
+std::optional<base::Error> find_pitch_fault(const Extension& extension, const JsonPlace& place) {
+  for (std::size_t axis = 0; extension.pitch_mm && axis < 3; ++axis) {
+    const double pitch = (*extension.pitch_mm)[axis];
+    if (pitch != pitch_unit(extension) && !base::can_stretch(extension.lattice, axis)) {
+      return base::Error{
+          base::ErrorCode::kBadInput,
+          fmt::format(
+              "the pitch differs by direction, {}; expected {} in the lattice {}",
+              fmt::join(*extension.pitch_mm, ", "),
+              base::can_stretch(extension.lattice, 2) ? "the same along x and y" : "one number",
+              lattice_name(extension.lattice)),
+          place.at(kPitchKey).pointer()};
+    }
+  }
+  return std::nullopt;
+}
+
 /// Finds faults before the robot is made, because the robot does not know the file's names and
 /// places.
 std::optional<base::Error> find_fault(const Document& document) {
@@ -73,6 +97,7 @@ std::optional<base::Error> find_fault(const Document& document) {
   const JsonPlace top;
   const JsonPlace material = top.at("material");
   auto fault = find_fault(document.material, material);
+  fault = fault ? fault : find_pitch_fault(extension, material);
   fault = fault ? fault : find_fault(extension.connectors, material);
   const JsonPlace kinds = top.at("kinds");
   for (const KindEntry& kind : extension.kinds) {
@@ -92,10 +117,33 @@ std::optional<base::Error> find_fault(const Document& document) {
   return fault;
 }
 
+/// The pitch and the lattice, stretched where the pitch differs by direction.
+struct Lengths {
+  double pitch_mm = 0;
+  base::Lattice lattice;
+};
+
+Lengths lengths_of(const Document& document) {
+  const Extension& extension = document.extension;
+  if (!extension.pitch_mm) {
+    return {document.material.pitch_mm, extension.lattice};
+  }
+  std::array<double, 3> factors = *extension.pitch_mm;
+  const double unit = pitch_unit(extension);
+  for (double& factor : factors) {
+    factor /= unit;
+  }
+  const double scale = document.material.pitch_mm / std::ranges::min(*extension.pitch_mm);
+  return {unit * scale, base::stretched(extension.lattice, factors)};
+}
+
 /// All modules without a kind of their own first, then the document's kinds in their order.
 std::vector<model::ModuleKind> kinds_of(const Document& document) {
   const Extension& extension = document.extension;
-  model::ModuleKind plain = model::default_kind(document.material, extension.lattice);
+  const auto [pitch_mm, lattice] = lengths_of(document);
+  model::Material material = document.material;
+  material.pitch_mm = pitch_mm;
+  model::ModuleKind plain = model::default_kind(material, lattice);
   apply(robot_connectors(extension.robot), extension.lattice, plain);
   apply(extension.connectors, extension.lattice, plain);
   std::vector<model::ModuleKind> kinds = {plain};
@@ -166,6 +214,9 @@ model::RobotSpec start_of(const Document& document) {
                         .obstacles = extension.obstacles,
                         .gravity_m_s2 = extension.gravity_m_s2,
                         .foot_mm = extension.foot_mm};
+  const Lengths lengths = lengths_of(document);
+  spec.material.pitch_mm = lengths.pitch_mm;
+  spec.lattice = lengths.lattice;
   spec.support_z = extension.has_floor ? std::optional(document.support_z) : std::nullopt;
   spec.existing.reserve(document.modules.size());
   for (const ModuleEntry& module : document.modules) {

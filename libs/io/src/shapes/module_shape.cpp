@@ -33,9 +33,11 @@ std::vector<HalfSpace> half_spaces(const base::Lattice& lattice, double layer_de
   std::vector<HalfSpace> spaces;
   bool is_flat = true;
   for (const base::Direction direction : base::directions(lattice)) {
-    const Place normal = base::unit_vector(lattice, direction);
+    const Place normal = base::heading(lattice, direction);
     is_flat = is_flat && normal[1] == 0;
-    spaces.push_back({.normal = normal, .distance = 0.5, .direction = direction});
+    spaces.push_back({.normal = normal,
+                      .distance = base::step_length(lattice, direction) / 2,
+                      .direction = direction});
   }
   if (is_flat) {
     spaces.push_back({.normal = {0, -1, 0}, .distance = layer_depth / 2, .direction = {}});
@@ -111,7 +113,8 @@ std::vector<ShapeFace> cell_faces(const base::Lattice& lattice, double layer_dep
 }
 
 Body body_of(const base::Lattice& lattice) {
-  const auto* const found = std::ranges::find(kBodies, lattice, &LatticeBody::lattice);
+  const auto* const found =
+      std::ranges::find(kBodies, base::unstretched(lattice), &LatticeBody::lattice);
   return found == kBodies.end() ? Body::kCell : found->body;
 }
 

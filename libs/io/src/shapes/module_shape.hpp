@@ -13,9 +13,10 @@
 /// global axes.
 ///
 /// The cell of a lattice is what is nearer to its node than to any other, {p : p . n <= 1/2 for the
-/// unit vectors n to all neighbours}: cube, hexagonal prism, rhombic dodecahedron. Every body lies
-/// inside its cell. So the plane halfway between two nodes keeps one body on either side, and the
-/// one whose node is nearer to the eye is nowhere behind the other.
+/// unit vectors n to all neighbours}: cube, hexagonal prism, rhombic dodecahedron, each stretched
+/// as the lattice is. Every body lies inside its cell. So the plane halfway between two nodes keeps
+/// one body on either side, and the one whose node is nearer to the eye is nowhere behind the
+/// other.
 namespace holdfast::io {
 
 /// A point or a vector in pitches.

@@ -39,18 +39,22 @@ VtuShape round_shape(Place (*on_body)(const Place&)) {
   return shape;
 }
 
-VtuShape cube() {
+VtuShape box(const base::Lattice& lattice) {
   VtuShape shape = {.type = kVtkHexahedron, .points = {}};
+  const Place corner = base::place_of(lattice, {1, 1, 1});
   for (std::size_t i = 0; i < 8; ++i) {
-    shape.points.push_back(scaled(0.5, kNodes[i]));
+    Place& point = shape.points.emplace_back(scaled(0.5, kNodes[i]));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      point[axis] *= corner[axis];
+    }
   }
   return shape;
 }
 
 /// The corners of the upper side, counter-clockwise from above, behind those below them.
-VtuShape hexagonal_prism() {
+VtuShape hexagonal_prism(const base::Lattice& lattice) {
   VtuShape shape = {.type = kVtkHexagonalPrism, .points = {}};
-  for (const ShapeFace& face : cell_faces(base::kHexagonalPrism)) {
+  for (const ShapeFace& face : cell_faces(lattice)) {
     if (face.normal[2] > 0) {
       shape.points = face.corners;
       for (Place& corner : shape.points) {
@@ -73,7 +77,8 @@ VtuShape vtu_shape(const base::Lattice& lattice) {
     case Body::kCell:
       break;
   }
-  return lattice == base::kHexagonalPrism ? hexagonal_prism() : cube();
+  return base::unstretched(lattice) == base::kHexagonalPrism ? hexagonal_prism(lattice)
+                                                             : box(lattice);
 }
 
 }  // namespace holdfast::io

@@ -287,7 +287,7 @@ class Writer {
     const auto& axes = axes_[static_cast<std::size_t>(base::index(facet.direction))];
     const double half_width = robot_.foot_half_width_mm();
     const Triple middle = scaled(robot_.material().pitch_mm / 2,
-                                 base::unit_vector(robot_.lattice(), facet.direction));
+                                 base::way_to_neighbour(robot_.lattice(), facet.direction));
     return sum(middle, sum(scaled(corner[0] * half_width, axes[0]),
                            scaled(corner[1] * half_width, axes[1])));
   }

@@ -21,9 +21,9 @@ Vector3 node_mm(const model::Robot& robot, std::size_t module) {
   return node;
 }
 
-/// The point half a pitch from the node of a module, mm.
+/// The middle of the way from the node of a module to the next, mm.
 Vector3 middle_mm(const model::Robot& robot, std::int32_t module, base::Direction direction) {
-  const Vector3 along = base::unit_vector(robot.lattice(), direction);
+  const Vector3 along = base::way_to_neighbour(robot.lattice(), direction);
   Vector3 place = node_mm(robot, base::at(module));
   for (std::size_t i = 0; i < 3; ++i) {
     place[i] += along[i] * robot.material().pitch_mm / 2;

@@ -76,7 +76,7 @@ std::shared_ptr<Adjoint> find_adjoint(StuckCore& core, const model::Robot& targe
 
 ThreeVectors facet_loads(const model::Robot& target, const model::LatticeBeam<double>& beam,
                          const model::Facet& facet) {
-  const auto law = solver::ground_facet(target, {.gamma = 0});
+  const auto law = solver::facet_law(target, beam, {.gamma = 0}).ground();
   ThreeVectors loads{};
   for (int k = 0; k < 6; ++k) {
     const auto force =

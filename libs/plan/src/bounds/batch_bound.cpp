@@ -14,6 +14,7 @@
 #include "holdfast/plan/robot_state.hpp"
 #include "holdfast/solver/dense.hpp"
 #include "holdfast/verdict/rigid_body.hpp"
+#include "own_solution.hpp"
 
 namespace holdfast::plan {
 
@@ -51,7 +52,7 @@ bool BatchBound::begin(const ElementSet& core, const verdict::Assessment& solved
   }
   const bool is_safe = solved.verdict == verdict::Verdict::kSafe;
   const bool is_polygon = solved.stability_rule == verdict::StabilityRule::kPolygon;
-  has_core_ = is_safe && !target_.is_modulus_stated() && (balance_ || !is_polygon) &&
+  has_core_ = is_safe && !needs_own_solution(target_) && (balance_ || !is_polygon) &&
               bound_.begin(elements, solved);
   if (!has_core_) {
     return false;

@@ -150,7 +150,7 @@ verdict::MovedMass EnergyBound::moved_mass() const {
 }
 
 EnergyBound::Vec EnergyBound::trial_force(const model::Facet& facet, const Vec& u) const {
-  return mechanics::trial_force(solver::ground_facet(target_, {.gamma = 0}),
+  return mechanics::trial_force(solver::facet_law(target_, beam_, {.gamma = 0}).ground(),
                                 beam_.to_local(facet.direction, u));
 }
 

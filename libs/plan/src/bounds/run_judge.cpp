@@ -15,6 +15,7 @@
 #include "bounds/section_response.hpp"
 #include "holdfast/host/team.hpp"
 #include "holdfast/verdict/rigid_body.hpp"
+#include "own_solution.hpp"
 #include "part_of.hpp"
 
 namespace holdfast::plan {
@@ -191,7 +192,7 @@ verdict::Assessment RunJudge::solve(const ElementSet& state, std::size_t place,
 void RunJudge::judge_piece(Piece& piece, Sense sense, FollowingWorth& worth,
                            const Wish& wish) const {
   std::optional<Certifier> certifier;
-  if (sense == Sense::kGrowing && !target_.is_modulus_stated()) {
+  if (sense == Sense::kGrowing && !needs_own_solution(target_)) {
     certifier.emplace(*this, piece.begin, worth);
   }
   ElementSet state = piece.begin;
@@ -238,7 +239,7 @@ std::vector<RunJudge::Piece> RunJudge::pieces_of(const ElementSet& state, Sense 
 
 std::vector<Judgement> RunJudge::judge(const ElementSet& state, Sense sense,
                                        std::span<const Element> run, const Wish& wish) {
-  if (sense == Sense::kGrowing && !target_.is_modulus_stated()) {
+  if (sense == Sense::kGrowing && !needs_own_solution(target_)) {
     grow_adjoints(state, run);
   }
   std::vector<Piece> pieces = pieces_of(state, sense, run);

@@ -55,9 +55,10 @@ inline base::Vec6<double> force_in_middle(const model::LatticeBeam<double>& beam
   return force;
 }
 
-/// What the six springs in the middle of a beam are stiff by, which know nothing of each other.
+/// What the six springs in the middle of a beam are stiff by, which know nothing of each other; all
+/// beams are the same, as needs_own_solution() says of others.
 inline base::Vec6<double> middle_stiffness(const model::LatticeBeam<double>& beam) {
-  const auto& k = beam.stiffness();
+  const auto& k = beam.stiffness(base::Direction::kPlusX);
   return {k.shear_x, k.shear_y, k.axial, k.bend_y / 4, k.bend_x / 4, k.twist};
 }
 

@@ -6,6 +6,7 @@
 
 #include "balance.hpp"
 #include "bounds/place_bounds.hpp"
+#include "own_solution.hpp"
 
 namespace holdfast::plan {
 
@@ -14,7 +15,7 @@ using verdict::Verdict;
 std::unique_ptr<BoundedCandidates> BoundedCandidates::make(const model::RobotSpec& spec,
                                                            const CandidateOptions& options) {
   auto robot = model::Robot::create(spec, options.equilibrium.thread_count);
-  if (!robot || robot.value().is_modulus_stated() || options.equilibrium.is_bonded) {
+  if (!robot || needs_own_solution(robot.value()) || options.equilibrium.is_bonded) {
     return nullptr;
   }
   std::unique_ptr<BoundedCandidates> made(

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "holdfast/host/team.hpp"
+#include "own_solution.hpp"
 
 namespace holdfast::plan {
 namespace {
@@ -75,7 +76,7 @@ std::unique_ptr<CandidateJudge> CandidateJudge::make(const model::RobotSpec& spe
                                                      std::size_t fill_max) {
   auto robot = model::Robot::create(spec, options.equilibrium.thread_count);
   // What bending does takes a solution of each candidate by itself.
-  if (!robot || robot.value().is_modulus_stated()) {
+  if (!robot || needs_own_solution(robot.value())) {
     return nullptr;
   }
   std::unique_ptr<CandidateJudge> judge(

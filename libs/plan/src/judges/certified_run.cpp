@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "judges/stage_judge.hpp"
+#include "own_solution.hpp"
 #include "part_of.hpp"
 
 namespace holdfast::plan {
@@ -148,7 +149,7 @@ std::unique_ptr<CertifiedRun> CertifiedRun::make(const RobotState& before,
   }
   model::RobotSpec spec = largest.spec();
   auto target = model::Robot::create(spec, options.thread_count);
-  if (!target || target.value().is_modulus_stated()) {
+  if (!target || needs_own_solution(target.value())) {
     return nullptr;
   }
   auto growth = find_growth(spec, target.value(), steps, sense);

@@ -21,6 +21,7 @@
 #include "holdfast/model/connected_parts.hpp"
 #include "judges/core_assessment.hpp"
 #include "judges/loss_judge.hpp"
+#include "own_solution.hpp"
 #include "part_of.hpp"
 #include "patches/lost_part.hpp"
 #include "patches/patch_bound.hpp"
@@ -94,7 +95,7 @@ class LossSearch {
     options_.equilibrium.has_rigid_figures = false;
     // What bending does takes a solution of each robot by itself.
     options_.is_by_checks =
-        options_.is_by_checks || options_.is_deformed || robot.is_modulus_stated();
+        options_.is_by_checks || options_.is_deformed || needs_own_solution(robot);
   }
 
   LossReport find() {

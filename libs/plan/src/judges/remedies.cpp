@@ -114,7 +114,7 @@ class RemedySearch {
         continue;
       }
       for (const base::Direction direction : base::directions(robot_.lattice())) {
-        const auto unit = base::unit_vector(robot_.lattice(), direction);
+        const auto unit = base::heading(robot_.lattice(), direction);
         const Cell cell = base::neighbour(robot_.lattice(), module.cell, direction);
         const double down = unit[0] * gravity[0] + unit[1] * gravity[1] + unit[2] * gravity[2];
         if (down > kBelow * size && std::ranges::binary_search(free, cell) &&

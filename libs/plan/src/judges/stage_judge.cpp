@@ -10,6 +10,7 @@
 
 #include "judges/core_assessment.hpp"
 #include "judges/stage_parts.hpp"
+#include "own_solution.hpp"
 
 namespace holdfast::plan {
 namespace {
@@ -135,7 +136,7 @@ void StageJudge::take_core(const RobotState& before, const Transition& transitio
   }
   auto robot = model::Robot::create(spec, options_.thread_count);
   // What bending does takes a solution of each robot by itself.
-  const bool is_taken = robot && !robot.value().is_modulus_stated();
+  const bool is_taken = robot && !needs_own_solution(robot.value());
   core_ = is_taken ? CoreResponse::make(std::move(robot).value(), options_) : nullptr;
   core_spec_ = std::move(spec);
 }

@@ -9,6 +9,7 @@
 #include "bounds/batch_bound.hpp"
 #include "bounds/run_judge.hpp"
 #include "judges/stage_judge.hpp"
+#include "own_solution.hpp"
 #include "part_of.hpp"
 
 namespace holdfast::plan {
@@ -76,7 +77,7 @@ std::optional<Judgement> certify_parts(const RobotState& whole,
                                        const solver::EquilibriumOptions& options) {
   const model::RobotSpec spec = whole.spec();
   const auto target = model::Robot::create(spec, options.thread_count);
-  if (!target || target.value().is_modulus_stated() || options.is_bonded) {
+  if (!target || needs_own_solution(target.value()) || options.is_bonded) {
     return std::nullopt;
   }
   ElementSet core(spec.existing.size());

@@ -27,7 +27,7 @@ class MoveFinder {
  public:
   MoveFinder(const RobotState& robot, std::int32_t module, const MoveRule& rule)
       : robot_(robot),
-        lattice_(robot.lattice()),
+        lattice_(base::unstretched(robot.lattice())),
         rule_(rule),
         from_(robot.module(module).cell),
         axial_(base::axial_of(lattice_, from_)) {}
@@ -221,7 +221,7 @@ class MoveFinder {
   }
 
   const RobotState& robot_;
-  const base::Lattice& lattice_;
+  base::Lattice lattice_;  ///< How modules move does not depend on the lengths of their sides.
   const MoveRule& rule_;
   Cell from_;
   Cell axial_;

@@ -72,7 +72,7 @@ std::vector<Joint> nearest_joints(const RobotState& robot, const Group& group, s
   for (std::size_t member = 0; member < group.from.size(); ++member) {
     const Vector3 place = place_from(lattice, carrier, group.from[member], group.way[waypoint]);
     for (const base::Direction direction : base::directions(lattice)) {
-      const Vector3 apart = plus(place, -1, base::unit_vector(lattice, direction));
+      const Vector3 apart = plus(place, -1, base::way_to_neighbour(lattice, direction));
       const double distance = std::sqrt(dot(apart, apart));
       all.emplace_back(distance, Joint{.direction = direction, .member = member});
       nearest = std::min(nearest, distance);
@@ -93,8 +93,9 @@ model::LimitRatio ratio_of(const RobotState& robot, const Group& group, std::siz
                            const Cell& carrier, const Joint& joint) {
   const base::Lattice& lattice = robot.lattice();
   const auto direction = static_cast<std::size_t>(base::index(joint.direction));
-  const Vector3 along = base::unit_vector(lattice, joint.direction);
-  const double half = robot.surroundings().material.pitch_mm / 2;
+  const Vector3 along = base::heading(lattice, joint.direction);
+  const double half =
+      robot.surroundings().material.pitch_mm * base::step_length(lattice, joint.direction) / 2;
   const Load load = load_about(robot, group, waypoint, carrier, plus({}, half, along));
   const auto frame = model::rotation_along<double>(lattice, joint.direction);
   const Vec6<double> middle = {dot(load.force_n, frame[0]),    dot(load.force_n, frame[1]),

@@ -47,7 +47,7 @@ bool SlidingContact::is_friction(std::size_t facet) const {
 
 base::Vec6<double> SlidingContact::slip_force(const LinearSystem& system, std::size_t facet,
                                               const SlipVector& slip) {
-  const mechanics::GroundFacet<double>& ground = system.ground();
+  const mechanics::GroundFacet<double>& ground = system.ground(system.facets()[facet].direction);
   Vec local{};
   for (std::size_t c = 0; c < kSlipSize; ++c) {
     local[kAlong[c]] = ground.stiffness[kAlong[c]] * slip[c];
@@ -62,7 +62,8 @@ SlidingContact::Force SlidingContact::force_of(std::size_t facet, const Vec& u) 
   const Vec local = system().beam().to_local(state.direction, system().law().force(state, u));
   Force force{.press_n = std::max(-local[2], 0.0)};
   for (std::size_t c = 0; c < kSlipSize; ++c) {
-    force.along[c] = local[kAlong[c]] - system().ground().stiffness[kAlong[c]] * slips_[facet][c];
+    force.along[c] =
+        local[kAlong[c]] - system().ground(state.direction).stiffness[kAlong[c]] * slips_[facet][c];
   }
   return force;
 }
@@ -107,7 +108,7 @@ SlidingFoot SlidingContact::foot_at(std::size_t facet, const Force& force) const
                    .force = force.along,
                    .press_n = force.press_n};
   for (std::size_t c = 0; c < kSlipSize; ++c) {
-    foot.stiffness[c] = system().ground().stiffness[kAlong[c]];
+    foot.stiffness[c] = system().ground(system().facets()[facet].direction).stiffness[kAlong[c]];
   }
   return foot;
 }
@@ -131,7 +132,8 @@ std::optional<SlidingFeet> SlidingContact::feet(const std::vector<Vec>& displace
           facet.direction, system().law().force(facet, columns_[column][active_[i]]));
       all.press_by_slip(i, other, k) = -local[2];
       for (std::size_t c = 0; c < kSlipSize; ++c) {
-        const double own = other == i && c == k ? system().ground().stiffness[kAlong[c]] : 0.0;
+        const double own =
+            other == i && c == k ? system().ground(facet.direction).stiffness[kAlong[c]] : 0.0;
         all.force_by_slip(i, c, other, k) = local[kAlong[c]] - own;
       }
     }
@@ -234,7 +236,7 @@ std::vector<std::size_t> SlidingContact::doubtful_facets(
     const FacetState& facet = system().facets()[i];
     Vec trial = system().law().trial_force(facet, displacement[i]);
     for (std::size_t c = 0; c < 2; ++c) {
-      trial[c] -= system().ground().stiffness[c] * slips_[i][c];
+      trial[c] -= system().ground(facet.direction).stiffness[c] * slips_[i][c];
     }
     if (!facet.is_bonded && may_have_second_state(facet.state, trial)) {
       doubtful.push_back(i);
@@ -297,7 +299,8 @@ bool SlidingContact::is_any_held() {
   const std::vector<Vec> displacement = system().facet_displacement();
   for (std::size_t i = 0; i < slips_.size(); ++i) {
     const Force force = force_of(i, displacement[i]);
-    const double held = std::abs(force.along[2]) / system().ground().lever;
+    const double held =
+        std::abs(force.along[2]) / system().ground(system().facets()[i].direction).lever;
     if ((slips_[i][0] != 0 || slips_[i][1] != 0) && held > kNoTurnShare * force.press_n) {
       return true;
     }

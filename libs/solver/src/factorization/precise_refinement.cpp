@@ -68,9 +68,7 @@ PreciseRefinement::PreciseRefinement(const LinearSystem& system)
     : system_(system),
       robot_(system.robot()),
       beam_(precise_section(robot_.material()), robot_.lattice()),
-      law_(beam_, mechanics::ground_facet<DoubleDouble>(
-                      precise_section(robot_.material()), 2 * robot_.foot_half_width_mm(),
-                      system.ground().gamma, system.ground().law)) {}
+      law_(beam_, 2 * robot_.foot_half_width_mm(), system.ground().gamma, system.ground().law) {}
 
 bool PreciseRefinement::run(const std::vector<Vec>& displacement, const Solve& solve) {
   displacement_ = all_converted<DoubleDouble>(displacement);

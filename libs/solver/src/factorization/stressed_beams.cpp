@@ -24,7 +24,8 @@ void add_times(Mat6<double>& sum, double factor, const Mat6<double>& term) {
 /// The stresses of a facet when its module moves by u: what its law holds of the trial force.
 Vec6<double> stress_of_facet(const LinearSystem& system, const FacetState& facet,
                              const Vec6<double>& u) {
-  const auto corrector = mechanics::corrector(system.ground(), facet.state, facet.is_held);
+  const auto corrector =
+      mechanics::corrector(system.ground(facet.direction), facet.state, facet.is_held);
   return base::multiply(corrector, system.law().trial_force(facet, u));
 }
 
@@ -40,7 +41,8 @@ Vec6<double> even_part(const LinearSystem& system, const mechanics::LargeBeam& b
     return {};
   }
   const double h = kTurn / turn;
-  const auto corrector = mechanics::corrector(system.ground(), facet.state, facet.is_held);
+  const auto corrector =
+      mechanics::corrector(system.ground(facet.direction), facet.state, facet.is_held);
   Vec6<double> sum{};
   for (const double sign : {1.0, -1.0}) {
     Vec6<double> step{};
@@ -61,7 +63,7 @@ StressedBeams::StressedBeams(const LinearSystem& system, const Vecs& displacemen
     : system_(system),
       displacement_(displacement),
       team_(thread_count, displacement.size()),
-      beams_(system.beam(), system.robot().lattice(), system.robot().material().pitch_mm) {}
+      beams_(system.beam(), system.robot().lattice()) {}
 
 const StressedBeams::Bases& StressedBeams::bases(base::Direction direction) {
   auto& known = bases_[static_cast<std::size_t>(base::index(direction))];

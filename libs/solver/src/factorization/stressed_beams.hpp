@@ -8,7 +8,7 @@
 
 #include "holdfast/base/algebra.hpp"
 #include "holdfast/host/team.hpp"
-#include "holdfast/mechanics/large_beams.hpp"
+#include "holdfast/model/large_beams.hpp"
 #include "holdfast/model/robot.hpp"
 #include "holdfast/solver/linear_system.hpp"
 
@@ -25,10 +25,8 @@ class StressedBeams {
 
   const LinearSystem& system() const { return system_; }
 
-  /// The stiffness of a beam by stress, in the order of a force in the middle.
-  const base::Vec6<double>& stiffness() const {
-    return beams_[base::Direction::kMinusZ].stiffness();
-  }
+  /// The beams by direction.
+  const model::LargeBeams& beams() const { return beams_; }
 
   /// The stresses of a connection, and of a facet in its state.
   Vec stress(const model::Connection& connection) const;
@@ -66,7 +64,7 @@ class StressedBeams {
   const LinearSystem& system_;
   const Vecs& displacement_;
   host::Team team_;
-  mechanics::LargeBeams beams_;
+  model::LargeBeams beams_;
   /// Blocks by direction.
   std::array<std::unique_ptr<const Bases>, base::Lattice::kDirectionCountMax + 1> bases_;
 };

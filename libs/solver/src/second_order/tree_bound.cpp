@@ -35,19 +35,26 @@ double length(double x, double y, double z = 0) { return std::sqrt(x * x + y * y
 /// What stresses need of the energy of beams, in shares of it.
 class Needs {
  public:
-  Needs(const Vec6<double>& stiffness, double pitch_mm)
-      : k_rho_(std::min({stiffness[0], stiffness[1], stiffness[2]})),
-        k_psi_(std::min({stiffness[3], stiffness[4], stiffness[5]})),
-        pitch_(pitch_mm) {}
+  /// Where beams differ, the softest counts, and of lengths what needs more.
+  Needs(const model::LargeBeams& beams, const base::Lattice& lattice) {
+    for (const base::Direction direction : base::facet_directions(lattice)) {
+      const Vec6<double>& k = beams[direction].stiffness();
+      k_rho_ = std::min({k_rho_, k[0], k[1], k[2]});
+      k_psi_ = std::min({k_psi_, k[3], k[4], k[5]});
+      longest_ = std::max(longest_, beams[direction].length());
+      shortest_ = std::min(shortest_, beams[direction].length());
+    }
+  }
 
   /// Takes the stresses of a beam or facet.
   void take(const Vec6<double>& stress) {
     const double pressed = std::max(0.0, -stress[2]) + length(stress[0], stress[1]) / 2;
     const double force = length(stress[0], stress[1], stress[2]);
     const double moment = length(stress[3], stress[4], stress[5]);
-    turning_ = pitch_ * pressed / (2 * k_psi_);
+    turning_ = longest_ * pressed / (2 * k_psi_);
     mixed_ = force / (2 * std::sqrt(k_rho_ * k_psi_)) + moment / (4 * k_psi_);
-    own_ = pitch_ * pressed / (12 * k_psi_) + 1.2 * std::max(0.0, -stress[2]) / (pitch_ * k_rho_);
+    own_ =
+        longest_ * pressed / (12 * k_psi_) + 1.2 * std::max(0.0, -stress[2]) / (shortest_ * k_rho_);
   }
 
   /// The need of all beams on the path to an end which is so many beams away from a support.
@@ -59,9 +66,10 @@ class Needs {
   }
 
  private:
-  double k_rho_;
-  double k_psi_;
-  double pitch_;
+  double k_rho_ = std::numeric_limits<double>::infinity();
+  double k_psi_ = std::numeric_limits<double>::infinity();
+  double shortest_ = std::numeric_limits<double>::infinity();  ///< Of beams, mm.
+  double longest_ = 0;
   double turning_ = 0;  ///< Times the depth of an end.
   double mixed_ = 0;    ///< Times its root: products of rotations and strains.
   double own_ = 0;
@@ -146,7 +154,7 @@ double buckling_factor_at_least(const StressedBeams& beams) {
   if (!tree.is_whole()) {
     return 0;
   }
-  Needs needs(beams.stiffness(), system.robot().material().pitch_mm);
+  Needs needs(beams.beams(), system.robot().lattice());
   std::vector<double> of_path(system.robot().modules().size());
   std::vector<double> of_beam(of_path.size());
   double largest = 0;

@@ -26,7 +26,7 @@ constexpr std::array<ConnectorClass, 12> all_lateral() {
 /// make the steps to the neighbours the same for every cell; the node of a cell, its module's
 /// centre, is at pitch (i b1 + j b2 + k b3). Directions come in pairs: that of index d ^ 1 is the
 /// opposite of that of index d, so the first of a pair has an even index. All neighbours are one
-/// pitch apart.
+/// pitch apart, unless the lattice is stretched().
 struct Lattice {
   static constexpr int kDirectionCountMax = 12;  ///< Of a face-centred lattice.
 
@@ -236,13 +236,103 @@ class NodePlaces {
 };
 
 /// The vector of length one from a node to its neighbour in `direction`, or through its facet
-/// there, in the global frame.
+/// there, in the global frame. The lattice is not stretched(); heading() knows those too.
 template <class Real = double>
 constexpr std::array<Real, 3> unit_vector(const Lattice& lattice, Direction direction) {
   if (direction == down(lattice)) {
     return {Real(0), Real(0), Real(-1)};
   }
   return place_of<Real>(lattice, lattice.steps[static_cast<std::size_t>(index(direction))]);
+}
+
+/// No length of a stretched lattice is longer than so many pitches: what root() can take.
+inline constexpr double kStretchMax = 16;
+
+/// The square of the length of b1, b2 or b3: exactly 1, but where a lattice is stretched.
+constexpr double basis_square(const Lattice& lattice, std::size_t basis) {
+  const Lattice::Squares& squares = lattice.basis_squares[basis];
+  return squares[0] + squares[1] + squares[2];
+}
+
+/// Whether neighbours are not all one pitch apart: modules that are no cubes, or flat prisms.
+constexpr bool is_stretched(const Lattice& lattice) {
+  return basis_square(lattice, 0) != 1 || basis_square(lattice, 1) != 1 ||
+         basis_square(lattice, 2) != 1;
+}
+
+/// Whether a lattice can be stretched along a global axis: if what leads along it leads nowhere
+/// else, so that all frames of connections stay as they are.
+constexpr bool can_stretch(const Lattice& lattice, std::size_t axis) {
+  for (std::size_t basis = 0; basis < 3; ++basis) {
+    const double square = lattice.basis_squares[basis][axis];
+    if (square != 0 && square != basis_square(lattice, basis)) {
+      return false;
+    }
+  }
+  for (const Cell& step : lattice.steps) {
+    const std::array<std::int32_t, 3> parts = {step.x, step.y, step.z};
+    const int count = (parts[0] != 0 ? 1 : 0) + (parts[1] != 0 ? 1 : 0) + (parts[2] != 0 ? 1 : 0);
+    if (count > 1 && parts[axis] != 0) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// The lattice with all lengths along the global axes multiplied by these factors, from 1 to
+/// kStretchMax, 1 along those that it cannot be stretched along. With factors of 1 it is the same.
+constexpr Lattice stretched(Lattice lattice, const std::array<double, 3>& factors) {
+  for (Lattice::Squares& squares : lattice.basis_squares) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      squares[axis] *= factors[axis] * factors[axis];
+    }
+  }
+  return lattice;
+}
+
+/// The lattice of which stretched() made this one: the same cells, neighbours and directions.
+constexpr Lattice unstretched(Lattice lattice) {
+  for (std::size_t basis = 0; basis < 3; ++basis) {
+    const double square = basis_square(lattice, basis);
+    for (double& part : lattice.basis_squares[basis]) {
+      part = square == 1 ? part : part / square;
+    }
+  }
+  return lattice;
+}
+
+/// The distance of a node from its neighbour in `direction`, or twice that from its facet there, in
+/// pitches: the one place that says how long a connection is. Exactly 1 where nothing is stretched.
+constexpr double step_length(const Lattice& lattice, Direction direction) {
+  if (index(direction) >= lattice.direction_count) {
+    return 1;
+  }
+  const Cell& step = lattice.steps[static_cast<std::size_t>(index(direction))];
+  const std::array<std::int32_t, 3> parts = {step.x, step.y, step.z};
+  double square = 1;
+  for (std::size_t basis = 0; basis < 3; ++basis) {
+    square = parts[basis] != 0 && basis_square(lattice, basis) != 1 ? basis_square(lattice, basis)
+                                                                    : square;
+  }
+  return root(square);
+}
+
+/// unit_vector(), of a stretched lattice too.
+template <class Real = double>
+constexpr std::array<Real, 3> heading(const Lattice& lattice, Direction direction) {
+  return is_stretched(lattice) ? unit_vector<Real>(unstretched(lattice), direction)
+                               : unit_vector<Real>(lattice, direction);
+}
+
+/// The vector from a node to its neighbour in `direction`, or twice that to its facet there, in the
+/// global frame, in pitches.
+constexpr std::array<double, 3> way_to_neighbour(const Lattice& lattice, Direction direction) {
+  std::array<double, 3> way = heading(lattice, direction);
+  const double length = step_length(lattice, direction);
+  for (double& part : way) {
+    part *= length;
+  }
+  return way;
 }
 
 }  // namespace holdfast::base

@@ -97,7 +97,10 @@ struct Extension {
   /// What every strength is divided by in robots that are made of the document, from 1 to
   /// kSafetyFactorMax.
   double safety_factor = 1;
-  base::Lattice lattice = base::kCubic;               ///< One of kNamedLattices.
+  base::Lattice lattice = base::kCubic;  ///< One of kNamedLattices.
+  /// The pitch along the global axes, where it is not the same along all; Material::pitch_mm is
+  /// then the least of them.
+  std::optional<std::array<double, 3>> pitch_mm = {};
   bool has_floor = true;                              ///< Else Document::support_z means nothing.
   std::optional<double> floor_friction;               ///< None: no slip.
   std::optional<std::array<double, 3>> gravity_m_s2;  ///< None: Material::gravity_m_s2, downwards.

@@ -45,6 +45,9 @@ struct MaterialParameter {
   double highest = 1e12;
 };
 
+/// Second moments of area of sections 10 m wide, and more.
+inline constexpr double kMomentMax = 1e16;
+
 /// The parameters in the order in which programs and documents list them. All that reads, writes,
 /// checks or shows a material goes through this table. VisibleSim counts its moments the other way
 /// round: its Iy bends lateral beams in the vertical plane, which is our Ix.
@@ -53,9 +56,9 @@ inline constexpr auto kMaterialParameters = std::to_array<MaterialParameter>({
     {"pitch_mm", "globalL", &Material::pitch_mm, "Pitch L", "mm"},
     {"facet_mm", "a", &Material::facet_mm, "Width of a face a", "mm"},
     {"section_area_mm2", "A", &Material::section_area_mm2, "Section A", "mm²"},
-    {"moment_x_mm4", "globalIy", &Material::moment_x_mm4, "Moment Ix", "mm⁴"},
-    {"moment_y_mm4", "globalIz", &Material::moment_y_mm4, "Moment Iy", "mm⁴"},
-    {"torsion_mm4", "globalJ", &Material::torsion_mm4, "Torsion J", "mm⁴"},
+    {"moment_x_mm4", "globalIy", &Material::moment_x_mm4, "Moment Ix", "mm⁴", 1e-12, kMomentMax},
+    {"moment_y_mm4", "globalIz", &Material::moment_y_mm4, "Moment Iy", "mm⁴", 1e-12, kMomentMax},
+    {"torsion_mm4", "globalJ", &Material::torsion_mm4, "Torsion J", "mm⁴", 1e-12, kMomentMax},
     {"poisson_ratio", "globalNu", &Material::poisson_ratio, "Poisson’s ratio", "", -0.99, 0.5},
     {"mass_kg", "globalMass", &Material::mass_kg, "Mass of a module", "kg"},
     {"gravity_m_s2", nullptr, &Material::gravity_m_s2, "Gravity", "m/s²"},

@@ -226,6 +226,12 @@ class Robot {
 
   const Material& material() const { return material_; }
 
+  /// The distance of a node from its neighbour in a direction, and twice that from its facet there,
+  /// in mm: the pitch, unless the lattice is stretched.
+  double step_mm(base::Direction direction) const {
+    return material_.pitch_mm * base::step_length(lattice_, direction);
+  }
+
   /// Whether the elastic modulus is known, and not Table I's, which is arbitrary.
   bool is_modulus_stated() const { return is_modulus_stated_; }
 

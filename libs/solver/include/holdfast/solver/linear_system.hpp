@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -55,9 +56,12 @@ struct Solution {
   std::vector<mechanics::ContactState> contact;  ///< By facet, in the order of Robot::facets().
 };
 
-/// What all facets of a robot that touch something do by one law.
-mechanics::GroundFacet<double> ground_facet(const model::Robot& robot,
-                                            const ContactOptions& contact);
+/// What the facets of a robot do by one law. Keeps a reference to the beams.
+template <class Real>
+class FacetLaw;
+
+FacetLaw<double> facet_law(const model::Robot& robot, const model::LatticeBeam<double>& beam,
+                           const ContactOptions& contact);
 
 /// How a linear solution ended.
 enum class LinearOutcome : std::uint8_t {
@@ -73,12 +77,27 @@ class FacetLaw {
  public:
   using Vec = base::Vec6<Real>;
 
-  FacetLaw(const model::LatticeBeam<Real>& beam, const mechanics::GroundFacet<Real>& ground)
-      : beam_(&beam), ground_(ground) {}
+  FacetLaw(const model::LatticeBeam<Real>& beam, Real facet_width, Real gamma,
+           mechanics::ContactLaw law)
+      : beam_(&beam) {
+    for (std::size_t group = 0; group < ground_.size(); ++group) {
+      ground_[group] = mechanics::ground_facet(
+          beam.stiffness_of_group(group), beam.length_of_group(group), facet_width, gamma, law);
+    }
+  }
 
-  const mechanics::GroundFacet<Real>& ground() const { return ground_; }
+  /// What a facet in a direction is, in its own frame. The law, its weak springs and the width are
+  /// those of all.
+  const mechanics::GroundFacet<Real>& ground(
+      base::Direction direction = base::Direction::kPlusX) const {
+    return ground_[beam_->group(direction)];
+  }
 
-  void set_gamma(Real gamma) { ground_.gamma = gamma; }
+  void set_gamma(Real gamma) {
+    for (mechanics::GroundFacet<Real>& ground : ground_) {
+      ground.gamma = gamma;
+    }
+  }
 
   /// This law with other weak springs.
   FacetLaw with_gamma(Real gamma) const {
@@ -89,7 +108,7 @@ class FacetLaw {
 
   /// The trial force on the facet when its module moves by u, local frame.
   Vec trial_force(const FacetState& facet, const Vec& u) const {
-    return mechanics::trial_force(ground_, beam_->to_local(facet.direction, u));
+    return mechanics::trial_force(ground(facet.direction), beam_->to_local(facet.direction, u));
   }
 
   /// The state that the law prescribes for a trial force. A facet that presses with no more than
@@ -98,19 +117,20 @@ class FacetLaw {
     if (facet.is_bonded) {
       return {};
     }
+    const mechanics::GroundFacet<Real>& here = ground(facet.direction);
     const Real sideways = base::absolute(trial[0]) + base::absolute(trial[1]);
     const Real torque =
         base::absolute(trial[3]) + base::absolute(trial[4]) + base::absolute(trial[5]);
     const bool is_rounding =
-        base::absolute(trial[2]) < Real(kPressureTie) * (sideways + torque / ground_.lever);
-    if (is_rounding && ground_.law == mechanics::ContactLaw::kRegularised) {
+        base::absolute(trial[2]) < Real(kPressureTie) * (sideways + torque / here.lever);
+    if (is_rounding && here.law == mechanics::ContactLaw::kRegularised) {
       return {.pressed = false};
     }
-    if (ground_.half_width == Real(0)) {  // A point: no torque tilts it this way rather than that.
+    if (here.half_width == Real(0)) {  // A point: no torque tilts it this way rather than that.
       return trial[2] < Real(0) ? mechanics::ContactState{.tilt_x = 1, .tilt_y = 1}
                                 : mechanics::ContactState{.pressed = false};
     }
-    return mechanics::contact_state(ground_, trial);
+    return mechanics::contact_state(here, trial);
   }
 
   /// The state that the law prescribes when its module moves by u.
@@ -120,15 +140,17 @@ class FacetLaw {
 
   /// The force that the support takes from the module when it moves by u.
   Vec force(const FacetState& facet, const Vec& u) const {
-    return beam_->to_global(facet.direction,
-                            mechanics::contact_force(ground_, facet.state, facet.is_held,
-                                                     beam_->to_local(facet.direction, u)));
+    return beam_->to_global(
+        facet.direction,
+        mechanics::contact_force(ground(facet.direction), facet.state, facet.is_held,
+                                 beam_->to_local(facet.direction, u)));
   }
 
   /// The derivative of force().
   base::Mat6<Real> tangent(const FacetState& facet) const {
-    return beam_->to_global(facet.direction,
-                            mechanics::contact_tangent(ground_, facet.state, facet.is_held));
+    return beam_->to_global(
+        facet.direction,
+        mechanics::contact_tangent(ground(facet.direction), facet.state, facet.is_held));
   }
 
  private:
@@ -136,7 +158,7 @@ class FacetLaw {
   static constexpr double kPressureTie = 1e-9;
 
   const model::LatticeBeam<Real>* beam_;
-  mechanics::GroundFacet<Real> ground_;
+  std::array<mechanics::GroundFacet<Real>, model::LatticeBeam<Real>::kGroupMax> ground_{};
 };
 
 /// What a linear system has done since it was made.
@@ -169,8 +191,11 @@ class LinearSystem {
   /// The robot's beams.
   const model::LatticeBeam<double>& beam() const { return beam_; }
 
-  /// What a facet is by the present law, in its own frame.
-  const mechanics::GroundFacet<double>& ground() const { return law_.ground(); }
+  /// What a facet in a direction is by the present law: FacetLaw::ground().
+  const mechanics::GroundFacet<double>& ground(
+      base::Direction direction = base::Direction::kPlusX) const {
+    return law_.ground(direction);
+  }
 
   /// What facets do to their modules by the present law.
   const FacetLaw<double>& law() const { return law_; }

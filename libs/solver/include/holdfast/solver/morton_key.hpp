@@ -15,7 +15,7 @@ class Bricks {
  public:
   /// Keeps a reference.
   explicit Bricks(const base::Lattice& lattice)
-      : lattice_(lattice), is_cubic_(lattice == base::kCubic) {}
+      : lattice_(lattice), is_cubic_(base::unstretched(lattice) == base::kCubic) {}
 
   base::Cell of(const base::Cell& cell) const { return is_cubic_ ? cell : of_leaning(cell); }
 

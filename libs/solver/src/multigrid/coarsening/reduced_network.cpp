@@ -34,7 +34,7 @@ class Builder {
         order_(morton_order(robot, elimination_.is_gone, team)),
         direction_count_(at(robot.lattice().direction_count)) {
     network_.lattice = robot.lattice();
-    network_.is_along_axes = robot.lattice() == base::kCubic;
+    network_.is_along_axes = base::unstretched(robot.lattice()) == base::kCubic;
     network_.ranks = robot.ranks();
     network_.node_count = order_.modules.size();
     network_.own_count = static_cast<std::size_t>(std::ranges::count_if(

@@ -164,14 +164,15 @@ Mat spread_along_axis(const Mat& c, std::size_t axis, double length, double reac
 
 Spring beam_spring(const base::Lattice& lattice, const model::Material& material,
                    std::size_t direction, std::size_t length) {
-  const double mm = material.pitch_mm * static_cast<double>(length);
-  const Point unit = base::unit_vector(lattice, static_cast<base::Direction>(direction));
+  const auto way = static_cast<base::Direction>(direction);
+  const double mm =
+      material.pitch_mm * static_cast<double>(length) * base::step_length(lattice, way);
+  const Point unit = base::heading(lattice, way);
   return {.direction = unit,
           .length = mm,
           .middle = scaled(unit, mm / 2),
           .partner = scaled(unit, mm),
-          .stiffness = long_beam(material, lattice, static_cast<int>(length))
-                           .block_11(static_cast<base::Direction>(direction))};
+          .stiffness = long_beam(material, lattice, static_cast<int>(length)).block_11(way)};
 }
 
 double behind(const Point& offset, const Point& direction) {

@@ -154,8 +154,8 @@ void Multigrid::take_law() {
   for (int code = 0; code < ContactState::kCodeCount; ++code) {
     const ContactState state = ContactState::from_code(code);
     for (const bool is_held : {false, true}) {
-      const Mat tangent = mirrored(mechanics::contact_tangent(ground(), state, is_held));
       for (const base::Direction direction : base::facet_directions(robot().lattice())) {
+        const Mat tangent = mirrored(mechanics::contact_tangent(ground(direction), state, is_held));
         known_tangents_[at(base::index(direction))][at(1 + 2 * code + (is_held ? 1 : 0))] =
             beam().to_global(direction, tangent);
       }

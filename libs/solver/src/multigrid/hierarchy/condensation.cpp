@@ -26,13 +26,19 @@ Direction direction_of(std::size_t index) { return static_cast<Direction>(index)
 /// The directions in which a robot's beams lead. Along the axes, as in cubes, fewer numbers round.
 class Ways {
  public:
-  explicit Ways(const base::Lattice& lattice) : is_cubic_(lattice == base::kCubic) {
-    for (const Direction direction : base::directions(lattice)) {
-      unit_[at(base::index(direction))] = base::unit_vector(lattice, direction);
+  explicit Ways(const Robot& robot)
+      : is_cubic_(base::unstretched(robot.lattice()) == base::kCubic) {
+    for (const Direction direction : base::directions(robot.lattice())) {
+      const std::size_t d = at(base::index(direction));
+      unit_[d] = base::heading(robot.lattice(), direction);
+      length_mm_[d] = robot.material().pitch_mm * base::step_length(robot.lattice(), direction);
     }
   }
 
   const std::array<double, 3>& unit(std::size_t direction) const { return unit_[direction]; }
+
+  /// The length of a beam from node to node.
+  double length_mm(std::size_t direction) const { return length_mm_[direction]; }
 
   void add_motion(const BeamShape& shape, std::size_t direction, const Vec6<double>& end,
                   Vec6<double>& u) const {
@@ -49,7 +55,17 @@ class Ways {
  private:
   bool is_cubic_;
   std::array<std::array<double, 3>, base::Lattice::kDirectionCountMax> unit_{};
+  std::array<double, base::Lattice::kDirectionCountMax> length_mm_{};
 };
+
+/// The shapes of beams, by direction.
+std::vector<ShapeTable> shape_tables(const Robot& robot, const Ways& ways) {
+  std::vector<ShapeTable> tables;
+  for (std::size_t d = 0; d < at(robot.lattice().direction_count); ++d) {
+    tables.emplace_back(ways.length_mm(d));
+  }
+  return tables;
+}
 
 /// A force at the tip of an arm, as force and torque at its root.
 Vec6<double> moved(Vec6<double> force, const std::array<double, 3>& step, double length) {
@@ -217,7 +233,7 @@ void recover_hanging(const Robot& robot, const Ways& ways, std::span<const Hangi
     const std::size_t host = at(robot.connected()[at(module)][direction]);
     Vec6<double>& u = displacement[at(module)];
     u = displacement[host];
-    const Point arm = scaled(ways.unit(direction ^ 1U), robot.material().pitch_mm);
+    const Point arm = scaled(ways.unit(direction ^ 1U), ways.length_mm(direction));
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::size_t j = (axis + 1) % 3;
       const std::size_t k = (axis + 2) % 3;
@@ -258,18 +274,18 @@ CondensedLoads condense(const Robot& robot, const ReducedNetwork& network, Team&
     }
   });
   update(copies, load);  // What modules carry is known to their own rank alone.
-  const double pitch = robot.material().pitch_mm;
-  const Ways ways(robot.lattice());
+  const Ways ways(robot);
   for (std::size_t round = 0; round + 1 < network.round_start.size(); ++round) {
     for (const auto& [module, direction] : round_of(network, round)) {
       const std::size_t host = at(robot.connected()[at(module)][direction]);
-      base::add_to(load[host], moved(load[at(module)], ways.unit(direction ^ 1U), pitch));
+      base::add_to(load[host],
+                   moved(load[at(module)], ways.unit(direction ^ 1U), ways.length_mm(direction)));
     }
     update(copies, load);
   }
-  ShapeTable shapes(pitch);
+  std::vector<ShapeTable> shapes = shape_tables(robot, ways);
   for (const Run& run : network.runs) {
-    move_loads_to_ends(robot, ways, run, shapes.of(run.length), load);
+    move_loads_to_ends(robot, ways, run, shapes[run.direction].of(run.length), load);
   }
   const Vec6<double> common = loads.is_uniform() ? loads[0] : Vec6<double>{};
   apply_flexibilities(robot, network, team, common, load);
@@ -279,14 +295,15 @@ CondensedLoads condense(const Robot& robot, const ReducedNetwork& network, Team&
 void recover(const Robot& robot, const ReducedNetwork& network, Team& team,
              const model::Loads& loads, const CondensedLoads& condensed,
              std::vector<Vec6<double>>& displacement, host::Halo& copies) {
-  ShapeTable shapes(robot.material().pitch_mm);
-  const Ways ways(robot.lattice());
+  const Ways ways(robot);
+  std::vector<ShapeTable> shapes = shape_tables(robot, ways);
   for (const Run& run : network.runs) {
-    shapes.of(run.length);
+    shapes[run.direction].of(run.length);
   }
   team.share(0, network.runs.size(), [&](std::size_t begin, std::size_t end) {
     for (const Run& run : std::span(network.runs).subspan(begin, end - begin)) {
-      recover_run(robot, ways, run, shapes.known(run.length), loads, condensed, displacement);
+      recover_run(robot, ways, run, shapes[run.direction].known(run.length), loads, condensed,
+                  displacement);
     }
   });
   for (std::size_t round = network.round_start.size() - 1; round-- > 0;) {

@@ -112,13 +112,13 @@ base::Cell cell_of_key(std::uint64_t key) {
 class Places {
  public:
   Places(const ReducedNetwork& network, double pitch)
-      : lattice_(network.lattice),
-        is_along_axes_(network.is_along_axes),
-        low_(network.low),
-        pitch_(pitch) {
+      : lattice_(network.lattice), is_along_axes_(network.is_along_axes), low_(network.low) {
     constexpr double kPerMm = 1U << 20U;
+    const bool is_stretched = base::is_stretched(lattice_);
     for (std::size_t i = 0; i < 3; ++i) {
       const base::Cell axial = {i == 0 ? 1 : 0, i == 1 ? 1 : 0, i == 2 ? 1 : 0};
+      const double along = pitch * base::place_of(lattice_, axial)[i];
+      along_axes_[i] = is_stretched ? std::nearbyint(along * kPerMm) / kPerMm : along;
       for (std::size_t k = 0; k < 3; ++k) {
         const double step = pitch * base::place_of(lattice_, axial)[k];
         step_[i][k] = std::nearbyint(step * kPerMm) / kPerMm;
@@ -128,7 +128,7 @@ class Places {
 
   Point of(const base::Cell& cell) const {
     if (is_along_axes_) {
-      return {pitch_ * cell.x, pitch_ * cell.y, pitch_ * cell.z};
+      return {along_axes_[0] * cell.x, along_axes_[1] * cell.y, along_axes_[2] * cell.z};
     }
     const base::Cell axial =
         axial_of_brick(lattice_, {low_.x + cell.x, low_.y + cell.y, low_.z + cell.z});
@@ -147,7 +147,7 @@ class Places {
   base::Lattice lattice_;
   bool is_along_axes_;
   base::Cell low_;
-  double pitch_;
+  Point along_axes_{};
   std::array<Point, 3> step_{};
 };
 

@@ -95,7 +95,7 @@ void add_axes(const ReducedNetwork& network, const model::Material& material, bo
                               .crossed = single(stencil.beams_double[place].crossed)};
       if (has_springs && d % 2 == 0) {
         stencil.springs[d / 2 * kRow + length] =
-            middle_spring(k12, d / 2, material.pitch_mm * static_cast<double>(length));
+            middle_spring(k12, d / 2, beam.length(static_cast<Direction>(d)));
       }
     }
   }
