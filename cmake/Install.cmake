@@ -68,6 +68,8 @@ foreach(board firmware firmware/v1)
   install(FILES build/${board}/module_stm32f0.elf
           DESTINATION ${CMAKE_INSTALL_DATADIR}/holdfast/${board} COMPONENT firmware OPTIONAL)
 endforeach()
+install(FILES build/firmware/module_stm32f091xc.elf
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/holdfast/firmware COMPONENT firmware OPTIONAL)
 set(manual ${PROJECT_SOURCE_DIR}/apps/cli/manual)
 find_program(HOLDFAST_GZIP gzip REQUIRED)
 mark_as_advanced(HOLDFAST_GZIP)

@@ -97,6 +97,10 @@ std::string describe(const LogEntry& entry, const StatusReport& report) {
       return fmt::format("hears its neighbour at {} no more", face_name(entry.value));
     case LogEntry::What::kConfigured:
       return fmt::format("starts with revision {} of the robot's numbers", entry.number);
+    case LogEntry::What::kOtherVersion:
+      return fmt::format(
+          "hears packets of other version {} at {}: the program there is another one", entry.number,
+          face_name(entry.value));
   }
   return fmt::format("logs what this program does not know ({})", static_cast<int>(entry.what));
 }

@@ -29,8 +29,9 @@ bool is_sound(const PlanMemory::Copy& copy) {
 
 }  // namespace
 
-Module::Module(const Configuration& configuration, PlanMemory& plans, Port& port)
-    : port_(port), plans_(plans), agent_(configuration.setup, configuration.identity) {
+Module::Module(const agent::Setup& setup, const agent::Identity& identity, PlanMemory& plans,
+               Port& port)
+    : port_(port), plans_(plans), agent_(setup, identity) {
   recall_plans();
   step(EventKind::kStart);
 }
