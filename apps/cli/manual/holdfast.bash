@@ -198,7 +198,7 @@ _holdfast() {
         --set) : ;;
         --support-z) : ;;
         --pitch) : ;;
-        --board) words="v2 v1" ;;
+        --board) words="v2 v1 v2-256k" ;;
         --image) files=1 ;;
         --pages) files=1 ;;
         --seed) : ;;
@@ -217,7 +217,7 @@ _holdfast() {
         --size) : ;;
         --title) : ;;
         --view) words="iso front side top" ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --board --image --pages --seed --kill --reset --cut --flip --plan --withdraw --attach --serial --time --json --connections --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --board --image --pages --bare --seed --kill --reset --cut --flip --plan --withdraw --attach --serial --time --json --connections --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
       esac
       ;;
     listen)

@@ -236,7 +236,8 @@ Command add_emulate(CLI::App& app) {
   command->add_flag("--bare", options->is_bare,
                     "Boards without pages: the first module is told the robot's numbers, which "
                     "go from module to module, and that it is the anchor; each module that is "
-                    "held is told that. Needs --board v2-256k");
+                    "held is told that; with --serial that is for you to do (holdfast tell). Needs "
+                    "--board v2-256k");
   add_seed(*command, options->seed, "Random seed").capture_default_str();
   add_fault_options(*command, options->faults);
   add_change_options(*command, options->changes, "s");

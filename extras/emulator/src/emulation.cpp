@@ -111,6 +111,11 @@ Told told_who(Time at, std::int32_t module, const module::Who& who) {
   return {.at = at, .module = module, .frame = framed(module::FrameKind::kWho, out.written())};
 }
 
+/// Whoever is at a line from outside tells them itself.
+bool tells_bare(const EmulationOptions& options) {
+  return options.is_bare && options.outside.empty();
+}
+
 /// When a module is there to be told something.
 Time time_to_tell(const EmulationOptions& options, std::int32_t module) {
   Time at = 0;
@@ -291,7 +296,8 @@ int EmulatedModules::free_face(std::int32_t module) const {
 
 /// Sends all that comes from outside, byte by byte, each on a face that is free for good.
 void EmulatedModules::announce() {
-  std::vector<Told> all = options_.is_bare ? told_to_bare(robot_, options_) : std::vector<Told>();
+  std::vector<Told> all =
+      tells_bare(options_) ? told_to_bare(robot_, options_) : std::vector<Told>();
   const std::size_t told_count = all.size();
   for (const sim::Announcement& announcement : options_.announcements) {
     all.push_back(told_of(announcement));
@@ -586,7 +592,7 @@ std::optional<std::string> find_options_fault(const model::Robot& robot,
   }
   auto fault = sim::find_floor_fault(robot);
   fault = fault ? fault : sim::find_options_fault(robot, same);
-  return fault || !options.is_bare ? fault : find_unreachable(robot, options);
+  return fault || !tells_bare(options) ? fault : find_unreachable(robot, options);
 }
 
 std::optional<std::string> find_image_fault(const Image& image, const EmulationOptions& options) {

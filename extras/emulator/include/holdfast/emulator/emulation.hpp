@@ -77,7 +77,7 @@ struct EmulationOptions {
   std::vector<sim::Announcement> announcements = {};
   /// Boards without a page of configuration: the robot's numbers are told to `plan_module`, the
   /// anchor and modules that are held who they are, each at a free face. Only images that take a
-  /// configuration by message.
+  /// configuration by message. With lines from outside nobody tells them but who is there.
   bool is_bare = false;
   bool has_ids = true;    ///< Else pages name no id, and a module's is of its chip's unique number.
   Time tell_at = 50'000;  ///< When, and so long after a module is attached.

@@ -79,7 +79,7 @@ class Module {
   void keep_plans();
   void take_plan(std::span<const std::uint8_t> payload);
   void watch_neighbours();
-  void take_incoming();
+  bool take_incoming();
   void send();
   void show();
 
