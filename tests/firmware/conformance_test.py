@@ -3,8 +3,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """conformance_test.py HOLDFAST MODULE QEMU_IMAGE   'holdfast conformance' at modules of two kinds.
 
-MODULE is examples/module/on_terminals.c as a process, QEMU_IMAGE the example for a Cortex-M4 (- leaves it
-out): all cases pass. On lines that are spoiled the cases that are about it fail, and others do not.
+MODULE is examples/module/on_terminals.c as a process, QEMU_IMAGE the example for a Cortex-M4 (-
+leaves it out): all cases pass. On lines that are spoiled the cases that are about it fail.
 Bytes that the program expects of the conversation are those of docs/evidence/wire.md.
 """
 import json
@@ -138,8 +138,8 @@ def main():
         expect(is_worked(line, worked), f'a line of the conversation: {line}')
     with tempfile.TemporaryDirectory() as folder:
         page = f'{folder}/page.bin'
-        expect(subprocess.run([holdfast, 'conformance', '--page', page], check=False).returncode == 0,
-               'the page is written')
+        done = subprocess.run([holdfast, 'conformance', '--page', page], check=False)
+        expect(done.returncode == 0, 'the page is written')
         code, report = at_process(holdfast, module, page)
         print(f'process: {report["passed"]} passed, {report["failed"]} failed', flush=True)
         show(report)
@@ -161,8 +161,8 @@ def main():
             print(f'QEMU: {report["passed"]} passed, {report["failed"]} failed', flush=True)
             show(report)
             expect(code == 0 and report['absent'] == 0, 'the Cortex-M4 in QEMU passes')
-        done = subprocess.run([holdfast, 'conformance', '/dev/null'], capture_output=True, text=True,
-                              check=False)
+        done = subprocess.run([holdfast, 'conformance', '/dev/null'], capture_output=True,
+                              text=True, check=False)
         expect(done.returncode == 65 and 'no serial device' in done.stderr, 'no device')
         for arguments in ([], ['/dev/null', '--page', page]):
             done = subprocess.run([holdfast, 'conformance', *arguments], capture_output=True,

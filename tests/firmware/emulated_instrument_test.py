@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The holdfast authors
 # SPDX-License-Identifier: Apache-2.0
-"""emulated_instrument_test.py HOLDFAST IMAGE STRUCTURE   boards without pages, told at a serial line.
+"""emulated_instrument_test.py HOLDFAST IMAGE STRUCTURE   boards without pages, told at a line.
 
 The structure's modules are emulated ('emulate --bare --serial'), a pseudo-terminal is at a free
 face of the first one, and 'holdfast tell' says there what a stranger with boards would say. Their

@@ -16,9 +16,15 @@ import tempfile
 import threading
 import tty
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent))
+from schemas_test import Schemas, places_of  # noqa: E402
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 DIRECTIONS = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
 
 faults = []
+schemas = Schemas(ROOT / 'docs/schemas')
+places = set()
 
 
 def expect(is_so, what):
@@ -42,6 +48,22 @@ def joined():
     for k in range(2):
         threading.Thread(target=carry, args=(ends[k][0], ends[1 - k][0]), daemon=True).start()
     return [os.ttyname(terminal) for _, terminal in ends]
+
+
+def checked(schema, text):
+    """A report, or a line of one, that must be as its schema says."""
+    value = json.loads(text)
+    found = schemas.check(schema + '#', value)
+    places.update(found.places)
+    expect(not found.faults, f'{schema}: {found.faults[:3]}')
+    return value
+
+
+def heard_as_json(holdfast, device, *options):
+    """What listen says, line by line."""
+    text = holdfast('listen', device, '--json', *options)[1]
+    return [checked('listen.schema.json', line) for line in text.splitlines()
+            if line.startswith('{')]
 
 
 class Robot:
@@ -121,6 +143,19 @@ def flashed_pages(holdfast, module, path, cells, planned, folder):
         eventually(lambda: listened(holdfast, robot.devices[0], f'knows the verdict: {before}'),
                    f'{before} before the plan')
         eventually(lambda: holdfast('twin', *of_all(robot, bare))[0] == 0, 'as its twin')
+        events = heard_as_json(holdfast, robot.devices[0], '--time', 1.5)
+        expect({'started', 'joined', 'phase', 'verdict', 'heard'} <=
+               {line['event'] for line in events}, 'the story as JSON')
+        expect(any(line['event'] == 'verdict' and line['verdict'] == before for line in events),
+               'the verdict as JSON')
+        status, = heard_as_json(holdfast, robot.devices[0], '--once')
+        expect(status['verdict'] == before and status['cell'] == list(cells[0]) and
+               status['anchor'] and len(status['neighbours']) == 1, 'the status as JSON')
+        report = checked('twin.schema.json',
+                         holdfast('twin', *of_all(robot, bare), '--json', '-')[1])
+        expect(len(report['modules']) == len(cells) and not report['differences'] and
+               all(row['table'] == row['twin'] for module in report['modules']
+                   for row in module['compared'] if row['what'] == 'verdict'), 'twins as JSON')
         for cell in planned:
             code, text = holdfast('tell', robot.devices[-1], 'plan', ','.join(map(str, cell)))
             expect(code == 0, 'a plan is taken at the last module')
@@ -133,6 +168,12 @@ def flashed_pages(holdfast, module, path, cells, planned, folder):
         expect(code == 1 and 'differs' in text and after in text, 'the plan is a difference')
         expect(holdfast('tell', robot.devices[0], 'withdraw', 'all')[0] == 0, 'withdrawn')
         eventually(lambda: holdfast('twin', robot.devices[0], bare)[0] == 0, 'as before')
+        told = [line for line in heard_as_json(holdfast, robot.devices[0], '--time', 1.5)
+                if line['event'] == 'withdraw']
+        expect([line['of'] for line in told] == ['all'], 'the withdrawal as JSON')
+        told = [line for line in heard_as_json(holdfast, robot.devices[-1], '--time', 1.5)
+                if line['event'] == 'plan']
+        expect([tuple(line['of']) for line in told] == list(map(tuple, planned)), 'plans as JSON')
         other = pathlib.Path(folder) / 'other.json'
         other.write_text(json.dumps({**document, 'planned': [], 'modules': [
             *document['modules'], [0, 1, 0]]}))
@@ -159,6 +200,8 @@ def bare_boards(holdfast, module, path, cells, folder):
         eventually(lambda: holdfast('twin', *of_all(robot, ground))[0] == 0, 'as the twin')
         eventually(lambda: f'verdict      {verdict}' in
                    holdfast('twin', robot.devices[0], ground)[1], 'and as the exact answer')
+        expect(any(line['event'] == 'configured' and line['revision'] == 1 for line in
+                   heard_as_json(holdfast, robot.devices[0], '--time', 1)), 'configured as JSON')
         expect(holdfast('tell', robot.devices[0], 'fixed')[0] == 0, 'fixed')
         code, text = holdfast('twin', robot.devices[0], ground)
         expect(code == 1 and 'is held from outside, its twin is not' in text, 'fixed is seen')
