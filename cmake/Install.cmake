@@ -76,7 +76,7 @@ mark_as_advanced(HOLDFAST_GZIP)
 foreach(page holdfast holdfast-checker holdfast-check holdfast-steps holdfast-next holdfast-order
              holdfast-move holdfast-simulate holdfast-emulate holdfast-convert holdfast-fit
              holdfast-generate holdfast-robots holdfast-view holdfast-listen holdfast-tell
-             holdfast-twin)
+             holdfast-twin holdfast-conformance)
   set(packed ${CMAKE_CURRENT_BINARY_DIR}/${page}.1.gz)
   add_custom_command(OUTPUT ${packed} DEPENDS ${manual}/${page}.1
                      COMMAND ${HOLDFAST_GZIP} -9nc ${manual}/${page}.1 > ${packed})

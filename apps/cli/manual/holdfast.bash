@@ -4,7 +4,7 @@ _holdfast() {
   local words='' files=''
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
-    mapfile -t COMPREPLY < <(compgen -W "check steps next order move simulate emulate listen tell twin serve convert fit generate robots view -h --help -V --version" -- "$current")
+    mapfile -t COMPREPLY < <(compgen -W "check steps next order move simulate emulate listen tell twin conformance serve convert fit generate robots view -h --help -V --version" -- "$current")
     return
   fi
   case ${COMP_WORDS[1]} in
@@ -224,7 +224,7 @@ _holdfast() {
       case $previous in
         --baud) : ;;
         --time) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --baud --once --time"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --baud --once --json --time"; else files=1; fi ;;
       esac
       ;;
     tell)
@@ -248,7 +248,17 @@ _holdfast() {
         --pitch) : ;;
         --baud) : ;;
         --time) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --also --robot --lattice --set --support-z --pitch --allow-unknown --baud --time -q --quiet"; else files=1; fi ;;
+        --json) files=1 ;;
+        *) if [[ $current == -* ]]; then words="-h --help --also --robot --lattice --set --support-z --pitch --allow-unknown --baud --time --json -q --quiet"; else files=1; fi ;;
+      esac
+      ;;
+    conformance)
+      case $previous in
+        --page) files=1 ;;
+        --section) words="line link round order refusal watch" ;;
+        --baud) : ;;
+        --json) files=1 ;;
+        *) if [[ $current == -* ]]; then words="-h --help --page --section --baud --json -q --quiet"; else files=1; fi ;;
       esac
       ;;
     serve)
