@@ -11,6 +11,7 @@
 #include "holdfast/instrument.hpp"
 #include "instrument_options.hpp"
 #include "interruption.hpp"
+#include "reading.hpp"
 
 namespace holdfast::cli {
 namespace {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <thread>
 
 #include "holdfast/instrument.hpp"
 #include "holdfast/module/configuration.hpp"

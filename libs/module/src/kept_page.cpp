@@ -5,7 +5,6 @@
 namespace holdfast::module {
 namespace {
 
-constexpr std::size_t kMagicBytes = sizeof(std::uint32_t);
 constexpr std::uint16_t kErased = 0xffff;
 
 std::uint16_t half_word(const std::uint8_t* bytes, std::size_t offset) {
