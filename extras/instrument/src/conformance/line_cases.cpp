@@ -14,7 +14,7 @@ constexpr int kQuietMs = 300;
 /// Says these bytes, which must not be a frame; then a whole greeting, which must be heard.
 void expect_dropped_then_heard(Check& check, const Bytes& bytes) {
   Partner& me = check.partner;
-  if (!check.expect(me.meet(), "a greeting", "nothing within 1 s")) {
+  if (!check.expect(me.meet(), "a greeting", "nothing within 3 s")) {
     return;
   }
   me.say(bytes);
@@ -51,7 +51,7 @@ void says_hello(Check& check) {
 
 void greets(Check& check) {
   Partner& me = check.partner;
-  if (check.expect(me.meet(), "a greeting", "nothing within 1 s")) {
+  if (check.expect(me.meet(), "a greeting", "nothing within 3 s")) {
     me.drop();
     check.expect_bytes(by_hand::packet({.number = me.theirs, .face = 0}), me.packet(3, 1'000));
   }
@@ -108,7 +108,7 @@ void drops_noise_that_ends_in_a_begin(Check& check) {
 
 void reads_two_frames_at_once(Check& check) {
   Partner& me = check.partner;
-  if (!check.expect(me.meet(), "a greeting", "nothing within 1 s")) {
+  if (!check.expect(me.meet(), "a greeting", "nothing within 3 s")) {
     return;
   }
   Bytes both = by_hand::frame(1, by_hand::packet(me.greeting(false)));

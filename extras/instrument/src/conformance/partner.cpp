@@ -57,9 +57,9 @@ void Partner::leave() {
 
 bool Partner::meet() {
   says_hello_ = true;
-  const auto greeting = packet(3, kAnswerMs);
-  theirs = greeting && greeting->size() >= 4 ? number_at(*greeting, 2) : 0;
-  return greeting.has_value();
+  const auto heard = packet(3, 3 * kAnswerMs);
+  theirs = heard && heard->size() >= 4 ? number_at(*heard, 2) : 0;
+  return heard.has_value();
 }
 
 bool Partner::open() {
@@ -74,6 +74,8 @@ bool Partner::open() {
       again = Clock::now() + std::chrono::milliseconds(200);
     }
     const auto answer = packet(3, 20);
+    // It draws another number if it has missed me for a moment.
+    theirs = answer && answer->size() == 10 ? number_at(*answer, 2) : theirs;
     if (answer && answer->size() == 10 && number_at(*answer, 4) == mine && (*answer)[6] == 1) {
       say_packet(by_hand::packet(greeting(true)));
       return true;
