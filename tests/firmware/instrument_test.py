@@ -14,6 +14,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 import tty
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent))
@@ -31,6 +32,14 @@ def expect(is_so, what):
     if not is_so:
         faults.append(what)
         print(f'FAULT: {what}', flush=True)
+
+
+def all_keys_occur():
+    """Every key of the two schemas, but for those that only a busy or mixed robot has."""
+    seldom = {f'listen.schema.json#/properties/{key}' for key in ('wire_version', 'count', 'face')}
+    for schema in ('listen.schema.json', 'twin.schema.json'):
+        for place in places_of(schema, schemas.file(schema)):
+            expect(place in places or place in seldom, f'occurs in no report: {place}')
 
 
 def joined():
@@ -144,7 +153,11 @@ def of_all(robot, path):
 
 def eventually(is_so, what):
     """On a machine at work a module may miss its neighbour for a moment, and begins anew."""
-    expect(any(is_so() for _ in range(15)), what)
+    for _ in range(15):
+        if is_so():
+            return
+        time.sleep(0.3)
+    expect(False, what)
 
 
 def listened(holdfast, device, words):
@@ -259,6 +272,7 @@ def main():
         refusals(holdfast, path)
         flashed_pages(holdfast, module, path, cells, document['planned'], folder)
         bare_boards(holdfast, module, path, cells, folder)
+    all_keys_occur()
     print(f'{len(faults)} faults' if faults else 'listen, tell and twin say what is')
     sys.exit(1 if faults else 0)
 
