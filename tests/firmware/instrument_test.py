@@ -21,6 +21,7 @@ sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent))
 from schemas_test import Schemas, places_of  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+PATIENCE_S = 60
 DIRECTIONS = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
 
 faults = []
@@ -153,11 +154,12 @@ def of_all(robot, path):
 
 def eventually(is_so, what):
     """On a machine at work a module may miss its neighbour for a moment, and begins anew."""
-    for _ in range(15):
-        if is_so():
+    end = time.monotonic() + PATIENCE_S
+    while not is_so():
+        if time.monotonic() > end:
+            expect(False, what)
             return
-        time.sleep(0.3)
-    expect(False, what)
+        time.sleep(0.2)
 
 
 def listened(holdfast, device, words):
