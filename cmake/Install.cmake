@@ -68,13 +68,15 @@ foreach(board firmware firmware/v1)
   install(FILES build/${board}/module_stm32f0.elf
           DESTINATION ${CMAKE_INSTALL_DATADIR}/holdfast/${board} COMPONENT firmware OPTIONAL)
 endforeach()
+install(FILES build/firmware/module_stm32f091xc.elf
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/holdfast/firmware COMPONENT firmware OPTIONAL)
 set(manual ${PROJECT_SOURCE_DIR}/apps/cli/manual)
 find_program(HOLDFAST_GZIP gzip REQUIRED)
 mark_as_advanced(HOLDFAST_GZIP)
 foreach(page holdfast holdfast-checker holdfast-check holdfast-steps holdfast-next holdfast-order
              holdfast-move holdfast-simulate holdfast-emulate holdfast-convert holdfast-fit
              holdfast-generate holdfast-robots holdfast-view holdfast-listen holdfast-tell
-             holdfast-twin)
+             holdfast-twin holdfast-conformance)
   set(packed ${CMAKE_CURRENT_BINARY_DIR}/${page}.1.gz)
   add_custom_command(OUTPUT ${packed} DEPENDS ${manual}/${page}.1
                      COMMAND ${HOLDFAST_GZIP} -9nc ${manual}/${page}.1 > ${packed})

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# check_image.sh IMAGE [RAM]   sizes and contents of the firmware of an STM32F091: fails if it is
-# too large, for RAM bytes too, or if anything is linked that is not holdfast's or on the list.
+# check_image.sh IMAGE [RAM [FLASH]]   sizes and contents of the firmware of an STM32F091: fails if
+# it is larger than so many bytes, or if anything is linked that is not holdfast's or on the list.
 set -euo pipefail
 image=$1
-flash_max=61440  # 60 KB of the 62 that Blinky Blocks 2 leave for programs
+flash_max=${3:-61440}  # 60 KB of the 62 that Blinky Blocks 2 leave for programs
 ram_max=${2:-20992}  # 8 KB, and 12.5 KB in which Blinky Blocks' own library keeps its buffers
 
 # Names of ours, the compiler's calls that firmware/src defines, and what is left of libgcc: shifts,

@@ -58,8 +58,8 @@ extern "C" int main() {
   using namespace holdfast;
   agent::prepare(atxmega::configuration.setup);
   auto& port = *new (atxmega::port_storage) atxmega::AbsentPort();
-  auto& module =
-      *new (atxmega::module_storage) module::Module(atxmega::configuration, atxmega::plans, port);
+  auto& module = *new (atxmega::module_storage) module::Module(
+      atxmega::configuration.setup, atxmega::configuration.identity, atxmega::plans, port);
   for (;;) {
     module.run_once();
   }

@@ -166,7 +166,8 @@ void BBinit() {
   blinkyblocks::port = new (blinkyblocks::port_storage) blinkyblocks::BlinkyBlocksPort();
   if (module::is_valid(holdfast_configuration)) {
     blinkyblocks::program = new (blinkyblocks::module_storage)
-        module::Module(holdfast_configuration, blinkyblocks::plans, *blinkyblocks::port);
+        module::Module(holdfast_configuration.setup, holdfast_configuration.identity,
+                       blinkyblocks::plans, *blinkyblocks::port);
   }
 }
 

@@ -24,7 +24,7 @@ struct Syscfg {  // 9.1
 };
 
 struct Flash {  // 3.5
-  Register ACR;
+  Register ACR, KEYR, OPTKEYR, SR, CR, AR;
 };
 
 struct Gpio {  // 8.4

@@ -256,6 +256,11 @@ std::uint32_t Stm32f0Port::take_reset_reason() {
   return flags;
 }
 
+std::span<const std::uint8_t> Stm32f0Port::unique_number() {
+  constexpr std::size_t kBytes = 12;
+  return {&at<const std::uint8_t>(0x1FFFF7AC), kBytes};
+}
+
 void Stm32f0Port::signal(std::uint32_t count, bool is_for_ever) {
   constexpr std::uint32_t kFlash = 250'000;
   timer3().CCR2 = 0;

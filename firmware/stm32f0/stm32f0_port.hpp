@@ -23,6 +23,9 @@ class Stm32f0Port final : public module::SerialPort {
   /// power, 0x04 pin, 0x02 option bytes. Once after each start.
   static std::uint32_t take_reset_reason();
 
+  /// The chip's unique number, 12 bytes (RM0091, 33.1).
+  static std::span<const std::uint8_t> unique_number();
+
   /// Shows so many red flashes and a pause, for a program that has stopped. The watchdog ends it,
   /// unless it is for ever.
   static void signal(std::uint32_t count, bool is_for_ever);

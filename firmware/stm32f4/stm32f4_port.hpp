@@ -20,6 +20,9 @@ class Stm32f4Port final : public module::SerialPort {
 
   static std::uint32_t take_reset_reason() { return 0; }
 
+  /// QEMU's chip has none.
+  static std::span<const std::uint8_t> unique_number() { return {}; }
+
   static void signal(std::uint32_t, bool) {}
 
   /// Takes the byte that has come in; the interrupt of a face's USART calls it.

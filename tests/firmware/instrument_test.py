@@ -14,17 +14,33 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 import tty
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent))
+from schemas_test import Schemas, places_of  # noqa: E402
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PATIENCE_S = 60
 DIRECTIONS = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
 
 faults = []
+schemas = Schemas(ROOT / 'docs/schemas')
+places = set()
 
 
 def expect(is_so, what):
     if not is_so:
         faults.append(what)
         print(f'FAULT: {what}', flush=True)
+
+
+def all_keys_occur():
+    """Every key of the two schemas, but for those that only a busy or mixed robot has."""
+    seldom = {f'listen.schema.json#/properties/{key}' for key in ('wire_version', 'count', 'face')}
+    for schema in ('listen.schema.json', 'twin.schema.json'):
+        for place in places_of(schema, schemas.file(schema)):
+            expect(place in places or place in seldom, f'occurs in no report: {place}')
 
 
 def joined():
@@ -42,6 +58,44 @@ def joined():
     for k in range(2):
         threading.Thread(target=carry, args=(ends[k][0], ends[1 - k][0]), daemon=True).start()
     return [os.ttyname(terminal) for _, terminal in ends]
+
+
+def checked(schema, text):
+    """A report, or a line of one, that must be as its schema says."""
+    value = json.loads(text)
+    found = schemas.check(schema + '#', value)
+    places.update(found.places)
+    expect(not found.faults, f'{schema}: {found.faults[:3]}')
+    return value
+
+
+def heard_as_json(holdfast, device, *options):
+    """What listen says, line by line."""
+    text = holdfast('listen', device, '--json', *options)[1]
+    return [checked('listen.schema.json', line) for line in text.splitlines()
+            if line.startswith('{')]
+
+
+def is_status(lines, cell, verdict):
+    status, = lines
+    return (status['event'] == 'status' and status['verdict'] == verdict and
+            status['cell'] == list(cell) and status['anchor'] and len(status['neighbours']) == 1)
+
+
+def is_same_as_twin(holdfast, count, arguments):
+    report = checked('twin.schema.json', holdfast('twin', *arguments, '--json', '-')[1])
+    return len(report['modules']) == count and not report['differences'] and all(
+        row['table'] == row['twin'] for module in report['modules']
+        for row in module['compared'] if row['what'] == 'verdict')
+
+
+def is_heard(holdfast, device, event, cell):
+    """Told again, as a module remembers 16 things, and listened to."""
+    words = cell if cell == 'all' else ','.join(map(str, cell))
+    holdfast('tell', device, event, words)
+    of = cell if cell == 'all' else list(cell)
+    return any(line['event'] == event and line['of'] == of
+               for line in heard_as_json(holdfast, device, '--time', 0.5))
 
 
 class Robot:
@@ -100,7 +154,12 @@ def of_all(robot, path):
 
 def eventually(is_so, what):
     """On a machine at work a module may miss its neighbour for a moment, and begins anew."""
-    expect(any(is_so() for _ in range(15)), what)
+    end = time.monotonic() + PATIENCE_S
+    while not is_so():
+        if time.monotonic() > end:
+            expect(False, what)
+            return
+        time.sleep(0.2)
 
 
 def listened(holdfast, device, words):
@@ -121,9 +180,18 @@ def flashed_pages(holdfast, module, path, cells, planned, folder):
         eventually(lambda: listened(holdfast, robot.devices[0], f'knows the verdict: {before}'),
                    f'{before} before the plan')
         eventually(lambda: holdfast('twin', *of_all(robot, bare))[0] == 0, 'as its twin')
+        eventually(lambda: any(line['event'] == 'verdict' and line['verdict'] == before for line in
+                               heard_as_json(holdfast, robot.devices[0], '--time', 1.5)),
+                   'the verdict as JSON')
+        eventually(lambda: is_status(heard_as_json(holdfast, robot.devices[0], '--once'), cells[0],
+                                     before), 'the status as JSON')
+        eventually(lambda: is_same_as_twin(holdfast, len(cells), of_all(robot, bare)),
+                   'twins as JSON')
         for cell in planned:
             code, text = holdfast('tell', robot.devices[-1], 'plan', ','.join(map(str, cell)))
             expect(code == 0, 'a plan is taken at the last module')
+            eventually(lambda cell=cell: is_heard(holdfast, robot.devices[-1], 'plan', cell),
+                       'a plan as JSON')
         eventually(lambda: listened(holdfast, robot.devices[0], f'knows the verdict: {after}'),
                    f'{after} with the plan')
         eventually(lambda: holdfast('listen', *robot.devices, '--once')[1].count(
@@ -132,6 +200,8 @@ def flashed_pages(holdfast, module, path, cells, planned, folder):
         code, text = holdfast('twin', robot.devices[0], bare)
         expect(code == 1 and 'differs' in text and after in text, 'the plan is a difference')
         expect(holdfast('tell', robot.devices[0], 'withdraw', 'all')[0] == 0, 'withdrawn')
+        eventually(lambda: is_heard(holdfast, robot.devices[0], 'withdraw', 'all'),
+                   'a withdrawal as JSON')
         eventually(lambda: holdfast('twin', robot.devices[0], bare)[0] == 0, 'as before')
         other = pathlib.Path(folder) / 'other.json'
         other.write_text(json.dumps({**document, 'planned': [], 'modules': [
@@ -204,6 +274,7 @@ def main():
         refusals(holdfast, path)
         flashed_pages(holdfast, module, path, cells, document['planned'], folder)
         bare_boards(holdfast, module, path, cells, folder)
+    all_keys_occur()
     print(f'{len(faults)} faults' if faults else 'listen, tell and twin say what is')
     sys.exit(1 if faults else 0)
 

@@ -4,7 +4,7 @@ _holdfast() {
   local words='' files=''
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
-    mapfile -t COMPREPLY < <(compgen -W "check steps next order move simulate emulate listen tell twin serve convert fit generate robots view -h --help -V --version" -- "$current")
+    mapfile -t COMPREPLY < <(compgen -W "check steps next order move simulate emulate listen tell twin conformance serve convert fit generate robots view -h --help -V --version" -- "$current")
     return
   fi
   case ${COMP_WORDS[1]} in
@@ -200,7 +200,7 @@ _holdfast() {
         --set) : ;;
         --support-z) : ;;
         --pitch) : ;;
-        --board) words="v2 v1" ;;
+        --board) words="v2 v1 v2-256k" ;;
         --image) files=1 ;;
         --pages) files=1 ;;
         --seed) : ;;
@@ -219,14 +219,14 @@ _holdfast() {
         --size) : ;;
         --title) : ;;
         --view) words="iso front side top" ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --board --image --pages --seed --kill --reset --cut --flip --plan --withdraw --attach --serial --time --json --connections --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --board --image --pages --bare --seed --kill --reset --cut --flip --plan --withdraw --attach --serial --time --json --connections --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
       esac
       ;;
     listen)
       case $previous in
         --baud) : ;;
         --time) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --baud --once --time"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --baud --once --json --time"; else files=1; fi ;;
       esac
       ;;
     tell)
@@ -250,7 +250,17 @@ _holdfast() {
         --pitch) : ;;
         --baud) : ;;
         --time) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --also --robot --lattice --set --support-z --pitch --allow-unknown --baud --time -q --quiet"; else files=1; fi ;;
+        --json) files=1 ;;
+        *) if [[ $current == -* ]]; then words="-h --help --also --robot --lattice --set --support-z --pitch --allow-unknown --baud --time --json -q --quiet"; else files=1; fi ;;
+      esac
+      ;;
+    conformance)
+      case $previous in
+        --page) files=1 ;;
+        --section) words="line link round order refusal watch" ;;
+        --baud) : ;;
+        --json) files=1 ;;
+        *) if [[ $current == -* ]]; then words="-h --help --page --section --baud --json -q --quiet"; else files=1; fi ;;
       esac
       ;;
     serve)

@@ -34,6 +34,7 @@ struct Command {
 };
 
 Command add_check(CLI::App& app);
+Command add_conformance(CLI::App& app);
 Command add_convert(CLI::App& app);
 Command add_emulate(CLI::App& app);
 Command add_fit(CLI::App& app);

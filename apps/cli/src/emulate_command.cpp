@@ -28,6 +28,7 @@ struct EmulateArguments {
   std::string board = "v2";
   std::string image;
   std::string pages;
+  bool is_bare = false;
   std::uint64_t seed = 1;
   std::vector<FaultOption<Fault>> faults = {
       {"kill", Fault::Kind::kKill, false, "A module loses its power at time T (s)"},
@@ -51,8 +52,9 @@ struct EmulateArguments {
 /// The image that ./dev firmware has built, or that was installed; if there is neither, where the
 /// first would be.
 std::string default_image(const std::string& board) {
-  const char* const name =
-      board == "v1" ? "firmware/v1/module_stm32f0.elf" : "firmware/module_stm32f0.elf";
+  const char* const name = board == "v1"        ? "firmware/v1/module_stm32f0.elf"
+                           : board == "v2-256k" ? "firmware/module_stm32f091xc.elf"
+                                                : "firmware/module_stm32f0.elf";
   const std::vector<std::filesystem::path> places = places_of(name, "");
   return find_file(places).value_or(places[1]).string();
 }
@@ -75,6 +77,7 @@ class EmulateRun {
       return write_pages(structure.value());
     }
     emulation_.seed = options_.seed;
+    emulation_.is_bare = options_.is_bare;
     emulation_.time_max = microseconds(options_.time_max_s);
     return options_.changes.is_empty() ? run_with_faults(structure.value())
                                        : run_with_changes(structure.value());
@@ -142,18 +145,25 @@ class EmulateRun {
     return std::nullopt;
   }
 
-  /// Every module's page, as module_0.bin and so on.
+  /// Every module's page, as module_0.bin and so on, and one for all that are nothing special.
   int write_pages(const Structure& structure) const {
     const auto pages = emulator::configuration_pages(structure.robot, emulation_);
     for (std::size_t i = 0; i < pages.size(); ++i) {
-      const std::string path = fmt::format("{}/module_{}.bin", options_.pages, i);
-      if (!write_or_complain(path, std::string_view(reinterpret_cast<const char*>(pages[i].data()),
-                                                    pages[i].size()))) {
+      if (!write_page(fmt::format("module_{}.bin", i), pages[i])) {
         return kExitBadInput;
       }
     }
+    if (!write_page("module_any.bin", emulator::common_page(structure.robot, emulation_))) {
+      return kExitBadInput;
+    }
     fmt::print("{} written to {}\n", host::counted(pages.size(), "page"), options_.pages);
     return kExitSafe;
+  }
+
+  bool write_page(const std::string& name, std::span<const std::uint8_t> page) const {
+    return write_or_complain(
+        options_.pages + "/" + name,
+        std::string_view(reinterpret_cast<const char*>(page.data()), page.size()));
   }
 
   static sim::Time microseconds(double seconds) { return static_cast<sim::Time>(seconds * 1e6); }
@@ -208,9 +218,10 @@ Command add_emulate(CLI::App& app) {
   command
       ->add_option("--board", options->board,
                    "Lines and memory of Blinky Blocks v2 (115,200 baud) or v1 (38,400), both with "
-                   "v2's processor, an STM32F091")
+                   "v2's processor, an STM32F091; v2-256k: with the STM32F091xC, which has room "
+                   "to answer instruments and to take its configuration by message")
       ->type_name("NAME")
-      ->check(CLI::IsMember({"v2", "v1"}).description(""))
+      ->check(CLI::IsMember({"v2", "v1", "v2-256k"}).description(""))
       ->capture_default_str();
   command
       ->add_option("--image", options->image,
@@ -219,8 +230,14 @@ Command add_emulate(CLI::App& app) {
   command
       ->add_option("--pages", options->pages,
                    "Only write the page of flash of every module, module_0.bin and so on, for a "
-                   "programmer")
+                   "programmer; and module_any.bin, which fits all but the first and those that "
+                   "are held")
       ->type_name("FOLDER");
+  command->add_flag("--bare", options->is_bare,
+                    "Boards without pages: the first module is told the robot's numbers, which "
+                    "go from module to module, and that it is the anchor; each module that is "
+                    "held is told that; with --serial that is for you to do (holdfast tell). Needs "
+                    "--board v2-256k");
   add_seed(*command, options->seed, "Random seed").capture_default_str();
   add_fault_options(*command, options->faults);
   add_change_options(*command, options->changes, "s");
@@ -242,6 +259,8 @@ Command add_emulate(CLI::App& app) {
           [options] { return EmulateRun(*options).run(); },
           {.examples = {{"emulate arm.json", "what does the firmware say, and when?"},
                         {"emulate arm.json --board v1", "with the lines of Blinky Blocks 1"},
+                        {"emulate arm.json --board v2-256k --bare",
+                         "no page for each block: all is told"},
                         {"emulate arm.json --pages flash", "only write the modules' pages"},
                         {"emulate arm.json --serial 1,0,1:+x=/dev/ttyUSB0",
                          "a real module in an emulated robot"}},

@@ -16,14 +16,15 @@ namespace {
 struct ListenArguments {
   std::vector<std::string> devices;
   InstrumentOptions options;
+  bool is_json = false;
 };
 
 int run_listen(const ListenArguments& arguments) {
   const Interruption interruption;
   const auto heard = listen(
       arguments.devices, arguments.options,
-      [](const std::string& line) {
-        fmt::print("{}\n", line);
+      [&](const HeardLine& line) {
+        fmt::print("{}\n", arguments.is_json ? line.json : line.text);
         std::fflush(stdout);
       },
       [] { return !Interruption::is_here(); });
@@ -50,6 +51,7 @@ Command add_listen(CLI::App& app) {
   add_baud(*command, arguments->options);
   command->add_flag("--once", arguments->options.is_once,
                     "Only say what every module has come to, in detail");
+  command->add_flag("--json", arguments->is_json, "Print JSON instead, one object in each line");
   command->add_option("--time", arguments->options.time_max_s, "End after this time (s)")
       ->type_name("T")
       ->check(number_between(0.001, 1e6).description(""));
@@ -57,7 +59,8 @@ Command add_listen(CLI::App& app) {
           [arguments] { return run_listen(*arguments); },
           {.examples = {{"listen /dev/ttyUSB0", "tell what happens, until Ctrl-C"},
                         {"listen /dev/ttyUSB0 --once", "what has this module come to?"},
-                        {"listen /dev/ttyUSB0 /dev/ttyUSB1 --time 20", "two modules, 20 s"}},
+                        {"listen /dev/ttyUSB0 /dev/ttyUSB1 --time 20", "two modules, 20 s"},
+                        {"listen /dev/ttyUSB0 --json", "lines for another program"}},
            .notes = "Lines are those of simulate --story: the seconds of the module's own clock, "
                     "its cell, what has happened. A module says nothing by itself; it is asked "
                     "20 times a second, and remembers the last 16 things between.",

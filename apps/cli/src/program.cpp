@@ -73,10 +73,11 @@ Program::Program()
   app.set_version_flag("-V,--version", "holdfast " + std::string(version()),
                        "Print the version and exit");
   app.require_subcommand(1);
-  commands_ = {add_check(app), add_steps(app),    add_next(app),    add_order(app),
-               add_move(app),  add_simulate(app), add_emulate(app), add_listen(app),
-               add_tell(app),  add_twin(app),     add_serve(app),   add_convert(app),
-               add_fit(app),   add_generate(app), add_robots(app),  add_view(app)};
+  commands_ = {add_check(app),   add_steps(app),    add_next(app),        add_order(app),
+               add_move(app),    add_simulate(app), add_emulate(app),     add_listen(app),
+               add_tell(app),    add_twin(app),     add_conformance(app), add_serve(app),
+               add_convert(app), add_fit(app),      add_generate(app),    add_robots(app),
+               add_view(app)};
   for (const Command& command : commands_) {
     formatter->set(command.app, command.help);
   }

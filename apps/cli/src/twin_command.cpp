@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "file_clash.hpp"
 #include "instrument_options.hpp"
 #include "reading.hpp"
 
@@ -12,6 +13,8 @@ namespace holdfast::cli {
 namespace {
 
 struct TwinArguments {
+  const CLI::App* command = nullptr;
+  std::string json;
   Reading reading;
   std::string device;
   std::vector<std::string> others;
@@ -20,7 +23,67 @@ struct TwinArguments {
   bool is_quiet = false;
 };
 
+void print_report(const TwinReport& report) {
+  for (const TwinModule& module : report.modules) {
+    fmt::print("{}: module {} at {}\n", module.device, module.id,
+               module.cell
+                   ? fmt::format("({},{},{})", module.cell->x, module.cell->y, module.cell->z)
+                   : std::string("(?)"));
+    if (!module.rows.empty()) {
+      fmt::print("  {:<12} {:<26} {}\n", "", "table", "twin");
+    }
+    for (const TwinModule::Row& row : module.rows) {
+      fmt::print("  {:<12} {:<26} {}\n", row.what, row.table, row.twin);
+    }
+  }
+  for (const std::string& difference : report.differences) {
+    fmt::print("differs: {}\n", difference);
+  }
+  if (report.differences.empty()) {
+    fmt::print("no difference\n");
+  }
+}
+
+std::string json_of(const TwinArguments& arguments, const TwinReport& report) {
+  std::string text;
+  io::JsonStream json(text);
+  json.begin_object();
+  io::write_report_head(
+      json, {.command = "twin",
+             .origin = {.file = arguments.file, .options = given_options(*arguments.command)}});
+  json.key("modules");
+  json.begin_array();
+  for (const TwinModule& module : report.modules) {
+    json.begin_object();
+    json.member("device", module.device);
+    json.member("id", module.id);
+    json.member("cell", module.cell);
+    json.key("compared");
+    json.begin_array();
+    for (const TwinModule::Row& row : module.rows) {
+      json.begin_object();
+      json.member("what", row.what);
+      json.member("table", row.table);
+      json.member("twin", row.twin);
+      json.end_object();
+    }
+    json.end_array();
+    json.end_object();
+  }
+  json.end_array();
+  json.key("differences");
+  json.begin_array();
+  for (const std::string& difference : report.differences) {
+    json.value(difference);
+  }
+  json.end_array();
+  json.end_object();
+  return text + "\n";
+}
+
 int run_twin(const TwinArguments& arguments) {
+  const Outputs outputs = {{"--json", arguments.json, FileFormat::kJson}};
+  refuse_clashes({&arguments.file, 1}, outputs);
   const auto structure = load_with_notes(arguments.file, arguments.reading);
   if (!structure) {
     return fail(structure.error(), arguments.file);
@@ -31,17 +94,13 @@ int run_twin(const TwinArguments& arguments) {
   if (!report) {
     return fail(report.error(), arguments.file);
   }
-  const auto& [lines, differences] = report.value();
-  if (!arguments.is_quiet) {
-    for (const std::string& line : lines) {
-      fmt::print("{}\n", line);
-    }
-    for (const std::string& difference : differences) {
-      fmt::print("differs: {}\n", difference);
-    }
-    if (differences.empty()) {
-      fmt::print("no difference\n");
-    }
+  const auto& differences = report.value().differences;
+  if (!arguments.is_quiet && leaves_standard_output(outputs)) {
+    print_report(report.value());
+  }
+  if (!arguments.json.empty() &&
+      !write_or_complain(arguments.json, json_of(arguments, report.value()))) {
+    return kExitBadInput;
   }
   return differences.empty() ? kExitSafe : kExitUnsafe;
 }
@@ -65,6 +124,8 @@ Command add_twin(CLI::App& app) {
                    "Wait for each module's verdict for this time (s); 15 without this option")
       ->type_name("T")
       ->check(number_between(0.001, 1e6).description(""));
+  arguments->command = command;
+  add_output(*command, "--json", arguments->json, "Write the report; - is standard output");
   add_quiet(*command, arguments->is_quiet);
   return {command,
           [arguments] { return run_twin(*arguments); },

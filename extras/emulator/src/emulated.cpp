@@ -82,6 +82,10 @@ base::Result<EmulatedRun> emulate(const Structure& structure, const CheckResult&
     error.where = io::one_line(image_path);
     return error;
   }
+  if (const auto fault = emulator::find_image_fault(image.value(), options)) {
+    return base::Error{
+        .code = base::ErrorCode::kBadInput, .message = *fault, .where = io::one_line(image_path)};
+  }
   emulator::Emulation emulation(image.value(), structure.robot, options);
   while (emulation.run_for(kSlice)) {
     if (progress && !progress(emulation.result())) {

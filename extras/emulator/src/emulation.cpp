@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/emulator/emulation.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cstring>
@@ -10,6 +12,7 @@
 #include "holdfast/base/algebra.hpp"
 #include "holdfast/base/check.hpp"
 #include "holdfast/boards/stm32f0.hpp"
+#include "holdfast/module/status_report.hpp"
 #include "module_cpu.hpp"
 
 namespace holdfast::emulator {
@@ -60,7 +63,7 @@ std::vector<module::Configuration> configurations(const model::Robot& robot,
   std::vector<module::Configuration> all;
   for (std::size_t i = 0; i < robot.modules().size() - robot.planned_count(); ++i) {
     const model::Module& module = robot.modules()[i];
-    configuration.identity = {.id = static_cast<std::uint32_t>(i + 1),
+    configuration.identity = {.id = options.has_ids ? static_cast<std::uint32_t>(i + 1) : 0U,
                               .is_fixed = module.support == model::Support::kFixed,
                               .is_anchor = i == static_cast<std::size_t>(options.anchor),
                               .cell = module.cell};
@@ -70,21 +73,86 @@ std::vector<module::Configuration> configurations(const model::Robot& robot,
   return all;
 }
 
-/// The frame by which a module receives an announcement on its line.
-std::vector<std::uint8_t> frame_of(const sim::Announcement& announcement) {
-  std::vector<std::uint8_t> payload;
-  const base::Cell& cell = announcement.cell;
-  for (const std::int32_t value : {cell.x, cell.y, cell.z}) {
-    for (unsigned shift = 0; shift < 32; shift += 8) {
-      payload.push_back(static_cast<std::uint8_t>(static_cast<std::uint32_t>(value) >> shift));
-    }
-  }
-  if (announcement.is_withdrawal) {
-    payload.push_back(1);
-  }
+std::vector<std::uint8_t> page_of(const module::Configuration& configuration) {
+  std::vector<std::uint8_t> page(module::kConfigurationBytes);
+  std::memcpy(page.data(), &configuration, page.size());
+  return page;
+}
+
+/// What a module is told on a line of its own.
+struct Told {
+  Time at = 0;
+  std::int32_t module = 0;
+  std::vector<std::uint8_t> frame;
+};
+
+std::vector<std::uint8_t> framed(module::FrameKind kind, std::span<const std::uint8_t> payload) {
   std::array<std::uint8_t, module::kFrameBytesMax> frame{};
-  const int size = module::write_frame(module::FrameKind::kPlan, payload, frame);
+  const int size = module::write_frame(kind, payload, frame);
   return {frame.begin(), frame.begin() + size};
+}
+
+Told told_of(const sim::Announcement& announcement) {
+  std::array<std::uint8_t, 13> payload{};
+  module::PayloadWriter out(payload);
+  out.cell(announcement.cell);
+  if (announcement.is_withdrawal) {
+    out.u8(1);
+  }
+  return {.at = announcement.at,
+          .module = announcement.module,
+          .frame = framed(module::FrameKind::kPlan, out.written())};
+}
+
+Told told_who(Time at, std::int32_t module, const module::Who& who) {
+  std::array<std::uint8_t, sizeof(module::Who)> payload{};
+  module::PayloadWriter out(payload);
+  module::each_field(who, out);
+  return {.at = at, .module = module, .frame = framed(module::FrameKind::kWho, out.written())};
+}
+
+/// Whoever is at a line from outside tells them itself.
+bool tells_bare(const EmulationOptions& options) {
+  return options.is_bare && options.outside.empty();
+}
+
+/// When a module is there to be told something.
+Time time_to_tell(const EmulationOptions& options, std::int32_t module) {
+  Time at = 0;
+  for (const Fault& fault : options.faults) {
+    at = fault.kind == Fault::Kind::kAttach && fault.module == module ? fault.at : at;
+  }
+  return at + options.tell_at;
+}
+
+/// All that boards without pages have to be told: the robot's numbers once, and who is who.
+std::vector<Told> told_to_bare(const model::Robot& robot, const EmulationOptions& options) {
+  std::vector<Told> all;
+  std::int32_t index = 0;
+  for (const module::Configuration& configuration : configurations(robot, options)) {
+    const Time at = time_to_tell(options, index);
+    std::array<std::uint8_t, module::kPayloadBytesMax> payload{};
+    const auto setup = module::setup_bytes(configuration);
+    for (std::uint8_t part = 0; index == options.plan_module; ++part) {
+      const std::size_t size = module::write_part(setup, 1, part, payload);
+      if (size == 0) {
+        break;
+      }
+      all.push_back({.at = at,
+                     .module = index,
+                     .frame = framed(module::FrameKind::kConfigure,
+                                     std::span<const std::uint8_t>(payload).first(size))});
+    }
+    const agent::Identity& own = configuration.identity;
+    if (own.is_anchor) {
+      all.push_back(told_who(at, index, {module::Who::What::kAnchor, own.cell}));
+    }
+    if (own.is_fixed) {
+      all.push_back(told_who(at, index, {module::Who::What::kFixed, {}}));
+    }
+    ++index;
+  }
+  return all;
 }
 
 }  // namespace
@@ -105,6 +173,7 @@ class EmulatedModules {
 
  private:
   std::int32_t neighbour(std::int32_t module, int face) const;
+  int free_face(std::int32_t module) const;
   void announce();
   void leave_out_real_modules();
   bool wait_for_real_time(Cycles next);
@@ -144,11 +213,14 @@ EmulatedModules::EmulatedModules(const Image& image, const model::Robot& robot,
   const auto off = static_cast<std::int32_t>(options.clock_off_ppm);
   // The fastest clock's byte.
   slice_ = kSliceCycles - kSliceCycles * options.clock_off_ppm / 500'000;
+  std::uint32_t number = 0;
   for (const module::Configuration& configuration : configurations(robot, options)) {
     const std::uint64_t seed = rng.next();
     const Cycles start = cycles(rng.below(options.start_spread + 1));
     const BoardOptions board{.clock_off_ppm = off > 0 && clocks.below(2) == 0 ? -off : off,
-                             .has_crystal = options.has_crystals};
+                             .has_crystal = options.has_crystals,
+                             .has_page = !options.is_bare,
+                             .number = ++number};
     modules_.push_back(
         std::make_unique<ModuleCpu>(image, costs_, configuration, seed, start, board));
   }
@@ -213,30 +285,42 @@ std::int32_t EmulatedModules::neighbour(std::int32_t module, int face) const {
   return other < count() ? other : model::Robot::kNoNeighbour;
 }
 
-/// Sends all announcements from outside, byte by byte, each on a face that is free for good.
+/// The first face without a neighbour, or the last one.
+int EmulatedModules::free_face(std::int32_t module) const {
+  int face = 0;
+  while (face < base::kDirectionCount - 1 && neighbour(module, face) >= 0) {
+    ++face;
+  }
+  return face;
+}
+
+/// Sends all that comes from outside, byte by byte, each on a face that is free for good.
 void EmulatedModules::announce() {
-  std::vector<sim::Announcement> all = options_.announcements;
+  std::vector<Told> all =
+      tells_bare(options_) ? told_to_bare(robot_, options_) : std::vector<Told>();
+  const std::size_t told_count = all.size();
+  for (const sim::Announcement& announcement : options_.announcements) {
+    all.push_back(told_of(announcement));
+  }
   for (std::size_t i = modules_.size(); options_.tells_planned && i < robot_.modules().size();
        ++i) {
-    all.push_back(
-        {.at = options_.plan_at, .module = options_.plan_module, .cell = robot_.modules()[i].cell});
+    all.push_back(told_of({.at = options_.plan_at,
+                           .module = options_.plan_module,
+                           .cell = robot_.modules()[i].cell}));
   }
-  std::ranges::stable_sort(all, {}, &sim::Announcement::at);
+  const bool is_planned = all.size() > told_count;
+  std::ranges::stable_sort(all, {}, &Told::at);
   const Cycles on_line = byte_cycles(static_cast<std::uint32_t>(options_.link.bit_rate));
   Cycles time = 0;
-  for (const sim::Announcement& announcement : all) {
-    int face = 0;
-    while (face < base::kDirectionCount - 1 && neighbour(announcement.module, face) >= 0) {
-      ++face;
-    }
-    time = std::max(time, cycles(announcement.at));
-    for (const std::uint8_t byte : frame_of(announcement)) {
+  for (const Told& told : all) {
+    time = std::max(time, cycles(told.at));
+    for (const std::uint8_t byte : told.frame) {
       time += on_line;
-      modules_[at(announcement.module)]->arrive(
-          usart_of(face), {.time = time, .byte_cycles = on_line, .byte = byte});
+      modules_[at(told.module)]->arrive(usart_of(free_face(told.module)),
+                                        {.time = time, .byte_cycles = on_line, .byte = byte});
     }
   }
-  planned_at_ = time / kCyclesPerMicrosecond;
+  planned_at_ = is_planned ? time / kCyclesPerMicrosecond : 0;
 }
 
 bool EmulatedModules::run_for(Time duration) {
@@ -434,6 +518,7 @@ FirmwareReport EmulatedModules::report() const {
     }
     report.mismatch_count += steps.mismatch_count;
     report.lost_bytes += module->lost_bytes();
+    report.erase_count += module->erase_count();
     report.watchdog_count += module->reset_count();
   }
   report.step_cycles_mean = report.step_count > 0 ? cycles_all / report.step_count : 0;
@@ -444,11 +529,46 @@ std::vector<std::vector<std::uint8_t>> configuration_pages(const model::Robot& r
                                                            const EmulationOptions& options) {
   std::vector<std::vector<std::uint8_t>> pages;
   for (const module::Configuration& configuration : configurations(robot, options)) {
-    pages.emplace_back(module::kConfigurationBytes);
-    std::memcpy(pages.back().data(), &configuration, pages.back().size());
+    pages.push_back(page_of(configuration));
   }
   return pages;
 }
+
+std::vector<std::uint8_t> common_page(const model::Robot& robot, const EmulationOptions& options) {
+  module::Configuration configuration = configurations(robot, options).front();
+  configuration.identity = {.id = 0, .is_fixed = false, .is_anchor = false, .cell = {}};
+  configuration.checksum = module::checksum_of(configuration);
+  return page_of(configuration);
+}
+
+namespace {
+
+/// Names a module that must be told something and has neighbours at all faces.
+std::optional<std::string> find_unreachable(const model::Robot& robot,
+                                            const EmulationOptions& options) {
+  const auto count = static_cast<std::int32_t>(robot.modules().size() - robot.planned_count());
+  for (std::int32_t i = 0; i < count; ++i) {
+    const model::Module& module = robot.modules()[at(i)];
+    const bool is_held = module.support == model::Support::kFixed;
+    if (!is_held && i != options.anchor && i != options.plan_module) {
+      continue;
+    }
+    const auto& others = robot.neighbours()[at(i)];
+    const bool is_enclosed =
+        std::all_of(others.begin(), others.begin() + base::kDirectionCount,
+                    [&](std::int32_t other) { return other >= 0 && other < count; });
+    if (is_enclosed) {
+      return fmt::format(
+          "the module at ({}, {}, {}) has no free face at which it could be told what it needs to "
+          "know; without pages {}",
+          module.cell.x, module.cell.y, module.cell.z,
+          is_held ? "a module that is held needs one" : "the first module of the file needs one");
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
 
 std::optional<std::string> find_options_fault(const model::Robot& robot,
                                               const EmulationOptions& options) {
@@ -470,13 +590,22 @@ std::optional<std::string> find_options_fault(const model::Robot& robot,
                            .module = fault.module,
                            .face = fault.face});
   }
-  const auto fault = sim::find_floor_fault(robot);
-  return fault ? fault : sim::find_options_fault(robot, same);
+  auto fault = sim::find_floor_fault(robot);
+  fault = fault ? fault : sim::find_options_fault(robot, same);
+  return fault || !tells_bare(options) ? fault : find_unreachable(robot, options);
+}
+
+std::optional<std::string> find_image_fault(const Image& image, const EmulationOptions& options) {
+  if (options.is_bare && !image.writes_flash()) {
+    return "this image takes no configuration by message; that for 256 KB of flash "
+           "(module_stm32f091xc.elf) does";
+  }
+  return std::nullopt;
 }
 
 Emulation::Emulation(const Image& image, const model::Robot& robot,
                      const EmulationOptions& options) {
-  HOLDFAST_CHECK(!find_options_fault(robot, options));
+  HOLDFAST_CHECK(!find_options_fault(robot, options) && !find_image_fault(image, options));
   modules_ = std::make_unique<EmulatedModules>(image, robot, options);
 }
 

@@ -83,6 +83,12 @@ std::uint32_t Image::at(const std::string& symbol) const {
   return found->second;
 }
 
+/// The configuration lies at the end.
+std::uint32_t Image::flash_end() const {
+  constexpr std::uint32_t kEnd = 4096;
+  return (at("holdfast_configuration") | (kEnd - 1)) + 1;
+}
+
 std::uint32_t Image::word(const std::string& symbol) const {
   const std::uint32_t address = at(symbol);
   for (const Segment& segment : segments) {

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "holdfast/base/check.hpp"
+#include "holdfast/module/program.hpp"
 
 namespace holdfast::emulator {
 namespace {
@@ -34,6 +35,15 @@ struct ActionsLayout {
 
 static_assert(sizeof(EventLayout) == 40 && sizeof(ActionsLayout) == 248);
 
+constexpr std::size_t kUniqueBytes = 12;
+
+/// Chips of one wafer: its coordinates differ, lot and number of the wafer do not (RM0091, 33.1).
+std::array<std::uint8_t, kUniqueBytes> unique_number(std::uint32_t number) {
+  const auto x = static_cast<std::uint8_t>(number & 0xffU);
+  const auto y = static_cast<std::uint8_t>(number >> 8U & 0xffU);
+  return {x, 0, y, 0, 7, '4', '2', 'Q', '0', '6', 'A', 'X'};
+}
+
 template <class Value>
 Value read_value(const Processor& processor, std::uint32_t address) {
   Value value{};
@@ -57,7 +67,8 @@ Stm32f091::Hooks ModuleCpu::hooks() {
             is_waiting_ = true;
             wake_at_ = stm_.next_event();
             processor_.stop();
-          }};
+          },
+      .stall = [this](Cycles cycles) { processor_.skip_to(processor_.now() + cycles); }};
 }
 
 ModuleCpu::ModuleCpu(const Image& image, CostTable& costs,
@@ -73,9 +84,36 @@ ModuleCpu::ModuleCpu(const Image& image, CostTable& costs,
   if (!board.has_crystal) {
     stm_.take_crystal_off();
   }
+  processor_.write(Processor::kUniqueNumber, unique_number(board.number));
+  if (image.writes_flash()) {
+    stm_.flash().place_at(image.flash_end() - FlashMemory::kBytes);
+  }
+  if (board.has_page) {
+    std::array<std::uint8_t, module::kConfigurationBytes> page{};
+    std::memcpy(page.data(), &configuration_, page.size());
+    const std::uint32_t place = image.at("holdfast_configuration");
+    if (image.writes_flash()) {
+      stm_.flash().load(place, page);
+    } else {
+      processor_.write(place, page);
+    }
+  }
+}
+
+/// The program has begun anew, with what it knows by now.
+void ModuleCpu::begin_shadow() {
+  const std::uint32_t place =
+      image_.at(image_.writes_flash() ? "holdfast_configuration_in_use" : "holdfast_configuration");
   std::array<std::uint8_t, module::kConfigurationBytes> page{};
-  std::memcpy(page.data(), &configuration_, page.size());
-  processor_.write(image.at("holdfast_configuration"), page);
+  processor_.read(place, page);
+  std::memcpy(static_cast<void*>(&configuration_), page.data(), page.size());
+  if (configuration_.identity.id == 0) {
+    std::array<std::uint8_t, kUniqueBytes> number{};
+    processor_.read(Processor::kUniqueNumber, number);
+    configuration_.identity.id = module::id_of(number);
+  }
+  shadow_ = std::make_unique<agent::Agent>(configuration_.setup, configuration_.identity);
+  verdict_ = agent::Verdict::kNone;
 }
 
 Cycles ModuleCpu::own(Cycles time) const {
@@ -137,10 +175,9 @@ std::vector<Sent> ModuleCpu::take_sent() {
 void ModuleCpu::reset(std::uint32_t reason) {
   stm_.reset(reason);
   processor_.reset();
-  shadow_ = std::make_unique<agent::Agent>(configuration_.setup, configuration_.identity);
+  event_ = {};
   is_inside_ = false;
   is_waiting_ = false;
-  verdict_ = agent::Verdict::kNone;
 }
 
 void ModuleCpu::crash() {
@@ -166,7 +203,13 @@ std::uint32_t ModuleCpu::stack_bytes() const {
 }
 
 void ModuleCpu::entered(std::span<const std::uint32_t, 4> arguments) {
+  using agent::EventKind;
+  const bool was_recall = event_.kind == EventKind::kRecall;
   read_event(arguments[1]);
+  // What is recalled comes first of all, then the start.
+  if (!was_recall && (event_.kind == EventKind::kRecall || event_.kind == EventKind::kStart)) {
+    begin_shadow();
+  }
   actions_address_ = arguments[2];
   entered_at_ = processor_.now();
   is_inside_ = true;

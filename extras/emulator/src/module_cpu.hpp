@@ -32,6 +32,8 @@ struct StepRecord {
 struct BoardOptions {
   std::int32_t clock_off_ppm = 0;  ///< How much faster than 48 MHz its clock runs.
   bool has_crystal = true;
+  bool has_page = true;      ///< Else it waits until it is told a configuration.
+  std::uint32_t number = 1;  ///< Its chip's, on the wafer.
 };
 
 /// One module: a processor with its peripherals, and the host's agent beside it. Times that go in
@@ -55,6 +57,8 @@ class ModuleCpu final : public Watcher {
 
   /// Lets the program jump to an address without code.
   void crash();
+
+  std::uint32_t erase_count() { return stm_.flash().erase_count(); }
 
   void kill() { is_alive_ = false; }
 
@@ -83,6 +87,7 @@ class ModuleCpu final : public Watcher {
   Cycles own(Cycles time) const;
   Cycles outside(Cycles time) const;
   void read_event(std::uint32_t address);
+  void begin_shadow();
   void compare_actions();
   void take_packet(std::span<const std::uint8_t> packet);
 

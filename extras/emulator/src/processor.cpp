@@ -6,6 +6,7 @@
 
 #include <array>
 
+#include "flash_memory.hpp"
 #include "holdfast/base/check.hpp"
 #include "holdfast/emulator/emulation.hpp"
 
@@ -53,6 +54,28 @@ struct Processor::Callbacks {
         static_cast<std::uint32_t>(value));
   }
 
+  static std::uint64_t read_flash(uc_engine*, std::uint64_t offset, unsigned size, void* self) {
+    return static_cast<Processor*>(self)->peripherals_.read_flash(
+        static_cast<std::uint32_t>(offset), size);
+  }
+
+  static void write_flash(uc_engine*, std::uint64_t offset, unsigned size, std::uint64_t value,
+                          void* self) {
+    static_cast<Processor*>(self)->peripherals_.write_flash(
+        static_cast<std::uint32_t>(offset), static_cast<std::uint32_t>(value), size);
+  }
+
+  /// The flash, as far as the program does not write it.
+  static void map_flash(uc_engine* engine, const Image& image, Processor* self) {
+    std::uint32_t bytes = image.flash_end() - kFlashBegin;
+    if (image.writes_flash()) {
+      bytes -= FlashMemory::kBytes;
+      check(uc_mmio_map(engine, kFlashBegin + bytes, FlashMemory::kBytes, &read_flash, self,
+                        &write_flash, self));
+    }
+    check(uc_mem_map(engine, kFlashBegin, bytes, UC_PROT_READ | UC_PROT_EXEC));
+  }
+
   template <std::size_t Index>
   static void map(uc_engine* engine, Processor* self) {
     check(uc_mmio_map(engine, kWindows[Index].begin, kWindows[Index].size, &read<Index>, self,
@@ -69,7 +92,9 @@ Processor::Processor(const Image& image, CostTable& costs, Peripherals& peripher
       vectors_(image.at("holdfast_vectors")) {
   check(uc_open(UC_ARCH_ARM, static_cast<uc_mode>(UC_MODE_THUMB | UC_MODE_MCLASS), &engine_));
   check(uc_ctl_set_cpu_model(engine_, UC_CPU_ARM_CORTEX_M0));
-  check(uc_mem_map(engine_, kFlashBegin, kFlashBytes, UC_PROT_READ | UC_PROT_EXEC));
+  constexpr std::uint32_t kPageBytes = 4096;
+  Callbacks::map_flash(engine_, image, this);
+  check(uc_mem_map(engine_, kUniqueNumber & ~(kPageBytes - 1), kPageBytes, UC_PROT_READ));
   check(uc_mem_map(engine_, kRamBegin, kRamBytes, UC_PROT_READ | UC_PROT_WRITE));
   Callbacks::map<0>(engine_, this);
   Callbacks::map<1>(engine_, this);

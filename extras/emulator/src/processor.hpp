@@ -20,6 +20,9 @@ class Peripherals {
   virtual ~Peripherals() = default;
   virtual std::uint32_t read(std::uint32_t address) = 0;
   virtual void write(std::uint32_t address, std::uint32_t value) = 0;
+  /// Loads and stores of the flash that the program writes; offsets are from its beginning.
+  virtual std::uint32_t read_flash(std::uint32_t offset, unsigned size) = 0;
+  virtual void write_flash(std::uint32_t offset, std::uint32_t value, unsigned size) = 0;
 };
 
 /// Is called when the program enters a function, and when it returns from it.
@@ -34,9 +37,10 @@ class Watcher {
 class Processor {
  public:
   static constexpr std::uint32_t kFlashBegin = 0x08000000;
-  static constexpr std::uint32_t kFlashBytes = 128 * 1024;
+  static constexpr std::uint32_t kFlashBytes = 256 * 1024;  ///< Of the largest.
   static constexpr std::uint32_t kRamBegin = 0x20000000;
   static constexpr std::uint32_t kRamBytes = 32 * 1024;
+  static constexpr std::uint32_t kUniqueNumber = 0x1FFFF7AC;  ///< 12 bytes; RM0091, 33.1.
 
   /// Keeps references to all but the image, and the address of the function to watch.
   Processor(const Image& image, CostTable& costs, Peripherals& peripherals, Watcher& watcher,

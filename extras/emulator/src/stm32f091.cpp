@@ -17,6 +17,7 @@ constexpr std::uint32_t kSyscfg = 0x40010000;
 constexpr std::uint32_t kAdc = 0x40012400;
 constexpr std::uint32_t kDma = 0x40020000;  // DMA2 lies 0x400 behind DMA1.
 constexpr std::uint32_t kRcc = 0x40021000;
+constexpr std::uint32_t kFlash = 0x40022000;
 constexpr std::uint32_t kGpio = 0x48000000;
 constexpr std::array<std::uint32_t, kUsartCount> kUsarts = {0x40013800, 0x40004400, 0x40004800,
                                                             0x40004C00, 0x40005000, 0x40011400};
@@ -91,6 +92,7 @@ void Stm32f091::reset(std::uint32_t reason) {
   reg(kRccCr) = kHsiOn | kHsiOn << 1U | kPllOn | kPllOn << 1U;
   reg(kRccCfgr) = kPllOfBootloader | 2U | 2U << 2U;
   reg(kRccCsr) = reason;
+  flash_.reset();
   reg(kWatchdogRlr) = 0xfff;
   receiving_ = {};
   sending_ = {};
@@ -238,6 +240,9 @@ std::uint32_t Stm32f091::read(std::uint32_t address) {
     default:
       break;
   }
+  if ((address & ~0x3ffU) == kFlash && address != kFlash) {  // ACR is as it was written.
+    return flash_.read_register(address - kFlash);
+  }
   for (const Transfer& transfer : sending_) {
     if (transfer.channel != 0 && address == transfer.channel + kCndtr) {
       return left_to_send(transfer, hooks_.now());
@@ -262,6 +267,10 @@ void Stm32f091::write(std::uint32_t address, std::uint32_t value) {
   }
   if ((address & ~0x3ffU) == kWatchdog) {
     write_watchdog(address, value);
+    return;
+  }
+  if ((address & ~0x3ffU) == kFlash && address != kFlash) {
+    hooks_.stall(flash_.write_register(address - kFlash, value));
     return;
   }
   reg(address) = value;

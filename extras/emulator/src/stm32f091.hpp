@@ -9,14 +9,15 @@
 #include <unordered_map>
 #include <vector>
 
+#include "flash_memory.hpp"
 #include "holdfast/base/rng.hpp"
 #include "processor.hpp"
 
 /// The peripherals of an STM32F091 as far as a module uses them, after the reference manual RM0091:
-/// reset and clock control (6), SYSCFG's memory map (9), DMA (10), the ADC's temperature sensor
-/// (13), TIM2 and TIM3 (17, 18), the independent watchdog (24) and USART1 to 6 (27). A peripheral
-/// whose clock is off reads as zero and takes nothing; a transfer needs the right channel, request,
-/// direction and address; a byte matching baud rates.
+/// flash (3), reset and clock control (6), SYSCFG's memory map (9), DMA (10), the ADC's temperature
+/// sensor (13), TIM2 and TIM3 (17, 18), the independent watchdog (24) and USART1 to 6 (27). A
+/// peripheral whose clock is off reads as zero and takes nothing; a transfer needs the right
+/// channel, request, direction and address; a byte matching baud rates.
 namespace holdfast::emulator {
 
 inline constexpr int kUsartCount = 6;
@@ -49,12 +50,23 @@ class Stm32f091 final : public Peripherals {
     std::function<void(std::uint32_t, std::uint8_t)> store;
     std::function<std::uint8_t(std::uint32_t)> load;
     std::function<void()> idle;  ///< The program only waits; see next_event().
+    std::function<void(Cycles)> stall = [](Cycles) {};  ///< The program stands still so long.
   };
 
   Stm32f091(Hooks hooks, std::uint64_t seed);
 
   std::uint32_t read(std::uint32_t address) override;
   void write(std::uint32_t address, std::uint32_t value) override;
+
+  std::uint32_t read_flash(std::uint32_t offset, unsigned size) override {
+    return flash_.read(offset, size);
+  }
+
+  void write_flash(std::uint32_t offset, std::uint32_t value, unsigned size) override {
+    hooks_.stall(flash_.write(offset, value, size));
+  }
+
+  FlashMemory& flash() { return flash_; }
 
   /// All registers as a bootloader leaves them after a reset: it runs by the PLL, on the internal
   /// oscillator, and has not put it back. What was being sent breaks off.
@@ -109,6 +121,7 @@ class Stm32f091 final : public Peripherals {
 
   Hooks hooks_;
   base::Rng noise_;
+  FlashMemory flash_;
   std::unordered_map<std::uint32_t, std::uint32_t> registers_;
   std::array<std::deque<Arrival>, kUsartCount> arrivals_;
   std::array<Transfer, kUsartCount> receiving_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "holdfast/instrument.hpp"
+#include "json_lines.hpp"
 #include "probe.hpp"
 #include "words.hpp"
 
@@ -28,7 +29,7 @@ struct Ear {
 class Listening {
  public:
   Listening(std::vector<Probe> probes, const InstrumentOptions& options,
-            const std::function<void(const std::string& line)>& tell)
+            const std::function<void(const HeardLine& line)>& tell)
       : options_(options), tell_(tell) {
     for (Probe& probe : probes) {
       ears_.push_back({.probe = std::move(probe),
@@ -92,7 +93,8 @@ class Listening {
     }
     if (Clock::now() > ear.heard_at + kSilentAfter && !ear.was_silent) {
       ear.was_silent = true;
-      tell_(fmt::format("{}: no answer", ear.probe.name()));
+      tell_({fmt::format("{}: no answer", ear.probe.name()),
+             instrument::json_line(ear.probe.name(), "silent")});
     }
     return std::nullopt;
   }
@@ -100,11 +102,11 @@ class Listening {
   void welcome(Ear& ear) {
     const module::StatusReport& report = *ear.probe.status();
     if (options_.is_once && !ear.is_heard) {
-      for (const std::string& line : instrument::describe(ear.probe.name(), report)) {
-        tell_(line);
-      }
+      tell_({fmt::format("{}", fmt::join(instrument::describe(ear.probe.name(), report), "\n")),
+             instrument::json_line(ear.probe.name(), report)});
     } else if (ear.was_silent) {
-      tell_(fmt::format("{}: answers again", ear.probe.name()));
+      tell_({fmt::format("{}: answers again", ear.probe.name()),
+             instrument::json_line(ear.probe.name(), "answers")});
     }
     ear.is_heard = true;
     ear.was_silent = false;
@@ -116,24 +118,27 @@ class Listening {
     const std::vector<module::LogEntry> log = ear.probe.take_log(lost);
     const module::StatusReport& report = *ear.probe.status();
     if (lost > 0) {
-      tell_(fmt::format("{:>14}  {}  {} it has forgotten", "", instrument::cell_text(report),
-                        host::counted(lost, "thing")));
+      tell_({fmt::format("{:>14}  {}  {} it has forgotten", "", instrument::cell_text(report),
+                         host::counted(lost, "thing")),
+             instrument::json_line(ear.probe.name(), "forgotten", lost)});
     }
     for (const module::LogEntry& entry : log) {
-      tell_(fmt::format("{:>12.6f} s  {}  {}", ear.probe.seconds(entry.time_us),
-                        instrument::cell_text(report), instrument::describe(entry, report)));
+      const double seconds = ear.probe.seconds(entry.time_us);
+      tell_({fmt::format("{:>12.6f} s  {}  {}", seconds, instrument::cell_text(report),
+                         instrument::describe(entry, report)),
+             instrument::json_line(ear.probe.name(), seconds, entry, report)});
     }
   }
 
   InstrumentOptions options_;
-  const std::function<void(const std::string& line)>& tell_;
+  const std::function<void(const HeardLine& line)>& tell_;
   std::vector<Ear> ears_;
 };
 
 }  // namespace
 
 base::Result<Heard> listen(std::span<const std::string> devices, const InstrumentOptions& options,
-                           const std::function<void(const std::string& line)>& tell,
+                           const std::function<void(const HeardLine& line)>& tell,
                            const std::function<bool()>& goes_on) {
   auto probes = instrument::open_probes(devices, options.baud);
   if (!probes) {

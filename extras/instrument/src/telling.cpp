@@ -114,17 +114,10 @@ base::Result<std::string> tell_who(Probe& probe, const Telling& telling) {
 }
 
 void send_parts(Probe& probe, std::span<const std::uint8_t> setup, std::uint16_t revision) {
-  constexpr std::size_t kPartBytes = 124;
-  for (std::uint8_t i = 0; i * kPartBytes < setup.size(); ++i) {
-    std::array<std::uint8_t, module::kPayloadBytesMax> payload{};
-    module::PayloadWriter out(payload);
-    module::each_field(
-        module::ConfigurationPart{
-            .revision = revision, .sum = module::sum_of_setup(setup), .index = i},
-        out);
-    const std::size_t begin = i * kPartBytes;
-    out.bytes(setup.subspan(begin, std::min(kPartBytes, setup.size() - begin)));
-    probe.send(FrameKind::kConfigure, out.written());
+  std::array<std::uint8_t, module::kPayloadBytesMax> payload{};
+  std::uint8_t index = 0;
+  while (const std::size_t size = module::write_part(setup, revision, index++, payload)) {
+    probe.send(FrameKind::kConfigure, std::span<const std::uint8_t>(payload).first(size));
   }
 }
 

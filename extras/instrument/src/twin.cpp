@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <thread>
 
 #include "holdfast/instrument.hpp"
 #include "holdfast/module/configuration.hpp"
@@ -60,6 +61,7 @@ std::string place_of_worst(const StatusReport& report) {
 /// What one module and its twin say, line by line; and in sentences where they differ.
 class Comparison {
  public:
+  /// The last module of the report is compared.
   Comparison(TwinReport& out, std::string name) : out_(out), name_(std::move(name)) {}
 
   void compare(const StatusReport& table, const StatusReport& twin) {
@@ -93,7 +95,7 @@ class Comparison {
   }
 
   void row(const std::string& what, const std::string& table, const std::string& twin) {
-    out_.lines.push_back(fmt::format("  {:<12} {:<26} {}", what, table, twin));
+    out_.modules.back().rows.push_back({what, table, twin});
   }
 
  private:
@@ -181,8 +183,8 @@ base::Result<TwinReport> compare_with_twin(std::span<const std::string> devices,
     const StatusReport& table = *probe.status();
     Comparison comparison(report,
                           fmt::format("{} at {}", probe.name(), instrument::cell_text(table)));
-    report.lines.push_back(
-        fmt::format("{}: module {} at {}", probe.name(), table.id, instrument::cell_text(table)));
+    report.modules.push_back(
+        {.device = probe.name(), .id = table.id, .cell = instrument::cell_of(table), .rows = {}});
     const auto index =
         table.has(StatusReport::kHasCell) ? find_module(structure.robot, table.cell) : std::nullopt;
     if (!index) {
@@ -191,7 +193,6 @@ base::Result<TwinReport> compare_with_twin(std::span<const std::string> devices,
                                   : "does not know its cell: no anchor is heard");
       continue;
     }
-    comparison.row("", "table", "twin");
     comparison.compare(
         table, twin_of(structure.robot, simulation, *index, module::sum_of_setup(setup.value())));
   }

@@ -18,22 +18,9 @@ std::string text(const base::Cell& cell) {
   return fmt::format("({},{},{})", cell.x, cell.y, cell.z);
 }
 
-std::string phase_name(std::uint8_t phase) {
-  return phase < sim::kPhaseCount ? std::string(sim::name(static_cast<agent::Phase>(phase)))
-                                  : fmt::format("{}", phase);
-}
-
-/// A verdict or reason of a later program must not be taken for one that is known.
-agent::Answer known(std::uint8_t verdict, std::uint16_t reason) {
-  const bool is_known = verdict <= static_cast<std::uint8_t>(agent::Verdict::kUndecided) &&
-                        reason < agent::kReasonCount;
-  return {.verdict = is_known ? static_cast<agent::Verdict>(verdict) : agent::Verdict::kUndecided,
-          .reason = is_known ? static_cast<agent::Reason>(reason) : agent::Reason::kNone};
-}
-
 std::string describe_verdict(const LogEntry& entry, const StatusReport& report) {
   const agent::Answer now = answer_of(report);
-  const agent::Answer then = known(entry.value, entry.number);
+  const agent::Answer then = known_answer(entry.value, entry.number);
   if (then.verdict == now.verdict && then.reason == now.reason) {
     return sim::describe(now);
   }
@@ -45,6 +32,18 @@ std::string describe_verdict(const LogEntry& entry, const StatusReport& report) 
 }
 
 }  // namespace
+
+std::string phase_name(std::uint8_t phase) {
+  return phase < sim::kPhaseCount ? std::string(sim::name(static_cast<agent::Phase>(phase)))
+                                  : fmt::format("{}", phase);
+}
+
+agent::Answer known_answer(std::uint8_t verdict, std::uint16_t reason) {
+  const bool is_known = verdict <= static_cast<std::uint8_t>(agent::Verdict::kUndecided) &&
+                        reason < agent::kReasonCount;
+  return {.verdict = is_known ? static_cast<agent::Verdict>(verdict) : agent::Verdict::kUndecided,
+          .reason = is_known ? static_cast<agent::Reason>(reason) : agent::Reason::kNone};
+}
 
 const char* face_name(std::uint8_t face) {
   constexpr std::array<const char*, base::kDirectionCount + 1> kNames = {"+x", "-x", "+y", "-y",
@@ -62,12 +61,16 @@ std::string face_names(std::uint8_t faces) {
   return names.empty() ? "none" : names;
 }
 
+std::optional<base::Cell> cell_of(const StatusReport& report) {
+  return report.has(StatusReport::kHasCell) ? std::optional(report.cell) : std::nullopt;
+}
+
 std::string cell_text(const StatusReport& report) {
   return report.has(StatusReport::kHasCell) ? text(report.cell) : "(?)";
 }
 
 agent::Answer answer_of(const StatusReport& report) {
-  agent::Answer answer = known(report.verdict, report.reason);
+  agent::Answer answer = known_answer(report.verdict, report.reason);
   answer.load_ratio_max = report.load_ratio_max;
   answer.worst_cell = report.worst_cell;
   answer.worst_direction = report.worst_direction < base::kDirectionCount
@@ -97,6 +100,10 @@ std::string describe(const LogEntry& entry, const StatusReport& report) {
       return fmt::format("hears its neighbour at {} no more", face_name(entry.value));
     case LogEntry::What::kConfigured:
       return fmt::format("starts with revision {} of the robot's numbers", entry.number);
+    case LogEntry::What::kOtherVersion:
+      return fmt::format(
+          "hears packets of other version {} at {}: the program there is another one", entry.number,
+          face_name(entry.value));
   }
   return fmt::format("logs what this program does not know ({})", static_cast<int>(entry.what));
 }

@@ -260,6 +260,7 @@ namespace hfm = holdfast::module;
 
 /// All that one module is; the port and the program in memory of their own, as they are made last.
 struct hf_module {
+  hfm::Configuration configuration;
   hfm::PlanMemory plans;
   hfm::ByteLines* bytes = nullptr;  ///< One of these two.
   hfm::PacketLines* packets = nullptr;
@@ -297,11 +298,10 @@ hf_module* hf_init(void* memory, size_t size, const hf_config* config) {
       reinterpret_cast<std::uintptr_t>(memory) % 8 != 0) {
     return nullptr;
   }
-  hfm::Configuration configuration;
-  if (!hfm::take_page(*config, configuration)) {
+  auto* const self = new (memory) hf_module;
+  if (!hfm::take_page(*config, self->configuration)) {
     return nullptr;
   }
-  auto* const self = new (memory) hf_module;
   hfm::Port* port = nullptr;
   if (config->port.is_connected == nullptr) {
     port = self->bytes = new (self->port) hfm::ByteLines(config->port);
@@ -310,7 +310,7 @@ hf_module* hf_init(void* memory, size_t size, const hf_config* config) {
   }
   auto& plans =
       config->keep == nullptr ? self->plans : *static_cast<hfm::PlanMemory*>(config->keep);
-  self->program = new (self->module) hfm::Program(configuration, config->id, plans, *port);
+  self->program = new (self->module) hfm::Program(self->configuration, config->id, plans, *port);
   return self;
 }
 

@@ -49,7 +49,11 @@ std::uint32_t checksum_of(const Configuration& configuration) {
 }
 
 bool is_valid(const Configuration& configuration) {
-  return configuration.magic == kConfigurationMagic &&
+  return configuration.magic == kConfigurationMagic && has_identity(configuration);
+}
+
+bool has_identity(const Configuration& configuration) {
+  return (configuration.magic == kConfigurationMagic || configuration.magic == kIdentityMagic) &&
          configuration.version == kConfigurationVersion &&
          configuration.checksum == checksum_of(configuration);
 }

@@ -32,6 +32,19 @@ bool is_sensible(const agent::CubeSetup& setup) {
 
 }  // namespace
 
+std::size_t write_part(std::span<const std::uint8_t> setup, std::uint16_t revision,
+                       std::uint8_t index, std::span<std::uint8_t, kPayloadBytesMax> payload) {
+  if (index >= kPartCount) {
+    return 0;
+  }
+  PayloadWriter out(payload);
+  const ConfigurationPart part{.revision = revision, .sum = sum_of_setup(setup), .index = index};
+  each_field(part, out);
+  const auto [begin, size] = place_of(index);
+  out.bytes(setup.subspan(begin, size));
+  return out.written().size();
+}
+
 Configurer::Configurer(Port& port, Configuration& configuration)
     : RelayedPort(port), configuration_(configuration), is_configured_(is_valid(configuration)) {}
 
@@ -42,9 +55,7 @@ bool Configurer::take_change() {
   if (is_complete_) {
     adopt();
   }
-  if (is_configured_) {
-    seal();
-  }
+  seal();
   has_changed_ = false;
   return is_configured_;
 }
@@ -162,8 +173,6 @@ void Configurer::adopt() {
   for (std::size_t i = 0; i < kSetupBytes; ++i) {
     to[i] = from[i];
   }
-  configuration_.magic = kConfigurationMagic;
-  configuration_.version = kConfigurationVersion;
   configuration_.revision = arriving_.number;
   is_configured_ = true;
   faces_ = {};
@@ -171,6 +180,7 @@ void Configurer::adopt() {
 
 void Configurer::tell_who(const Who& who) {
   agent::Identity& own = configuration_.identity;
+  const agent::Identity before = own;
   switch (who.what) {
     case Who::What::kAnchor:
       own.is_anchor = true;
@@ -188,10 +198,12 @@ void Configurer::tell_who(const Who& who) {
     default:
       return;
   }
-  has_changed_ = true;
+  has_changed_ = has_changed_ || before.is_fixed != own.is_fixed ||
+                 before.is_anchor != own.is_anchor || !(before.cell == own.cell);
 }
 
 void Configurer::seal() {
+  configuration_.magic = is_configured_ ? kConfigurationMagic : kIdentityMagic;
   configuration_.checksum = checksum_of(configuration_);
   keep({reinterpret_cast<const std::uint8_t*>(&configuration_), kConfigurationBytes});
 }
@@ -225,15 +237,10 @@ bool Configurer::serve(int at) {
 
 void Configurer::send_part(int at) {
   Face& face = faces_[static_cast<std::size_t>(at)];
-  std::array<std::uint8_t, kPartHeaderBytes + kPartBytes> bytes;
-  PayloadWriter out(bytes);
-  const ConfigurationPart part{.revision = configuration_.revision,
-                               .sum = setup_sum(configuration_),
-                               .index = static_cast<std::uint8_t>(face.next_part)};
-  each_field(part, out);
-  const auto [begin, size] = place_of(face.next_part);
-  out.bytes(setup_bytes(configuration_).subspan(begin, size));
-  tell(at, FrameKind::kConfigure, out.written());
+  std::array<std::uint8_t, kPayloadBytesMax> bytes;
+  const std::size_t size = write_part(setup_bytes(configuration_), configuration_.revision,
+                                      static_cast<std::uint8_t>(face.next_part), bytes);
+  tell(at, FrameKind::kConfigure, std::span<const std::uint8_t>(bytes).first(size));
   face.next_part = face.next_part + 1 < kPartCount ? face.next_part + 1 : -1;
   face.asks_at = face.next_part < 0 ? now() : face.asks_at;
 }

@@ -21,6 +21,8 @@ bool Instrument::receive(Incoming& incoming) {
   while (RelayedPort::receive(incoming)) {
     if (incoming.kind == FrameKind::kPlan) {
       log_plan(incoming.payload);
+    } else if (incoming.kind == FrameKind::kPacket) {
+      log_other_version(incoming);
     }
     if (incoming.kind != FrameKind::kAsk) {
       return true;
@@ -129,6 +131,19 @@ void Instrument::log(LogEntry::What what, std::uint8_t value, std::uint16_t numb
   ++log_next_;
 }
 
+/// Once for each neighbour: its program has to be replaced, or this one.
+void Instrument::log_other_version(const Incoming& packet) {
+  const auto bit = static_cast<std::uint8_t>(1U << static_cast<unsigned>(packet.face));
+  const bool is_whole =
+      packet.payload.size() >= agent::wire::kHeaderBytes + agent::wire::kChecksumBytes;
+  const unsigned version = is_whole ? packet.payload[1] >> 6U : agent::wire::kVersion;
+  if (version != agent::wire::kVersion && (others_ & bit) == 0) {
+    log(LogEntry::What::kOtherVersion, static_cast<std::uint8_t>(packet.face),
+        static_cast<std::uint16_t>(version));
+    others_ = static_cast<std::uint8_t>(others_ | bit);
+  }
+}
+
 void Instrument::log_plan(std::span<const std::uint8_t> payload) {
   PayloadReader in(payload);
   base::Cell cell;
@@ -164,6 +179,7 @@ void Instrument::note_neighbours() {
     const bool is_there = is_connected(face);
     connected = static_cast<std::uint8_t>(connected | (is_there ? bit : 0U));
     if (is_there != ((connected_ & bit) != 0)) {
+      others_ = static_cast<std::uint8_t>(is_there ? others_ : others_ & ~bit);
       log(is_there ? LogEntry::What::kHeard : LogEntry::What::kUnheard,
           static_cast<std::uint8_t>(face));
     }

@@ -29,26 +29,28 @@ bool is_sound(const PlanMemory::Copy& copy) {
 
 }  // namespace
 
-Module::Module(const Configuration& configuration, PlanMemory& plans, Port& port)
-    : port_(port), plans_(plans), agent_(configuration.setup, configuration.identity) {
+Module::Module(const agent::Setup& setup, const agent::Identity& identity, PlanMemory& plans,
+               Port& port)
+    : port_(port), plans_(plans), agent_(setup, identity) {
   recall_plans();
   step(EventKind::kStart);
 }
 
 void Module::run_once() {
   watch_neighbours();
+  bool has_more = false;
   if (actions_.is_unfinished) {
     step(EventKind::kContinue);
     port_.stay_connected();
   } else {
-    take_incoming();
+    has_more = take_incoming();
   }
   if (wake_at_ <= port_.now()) {
     step(EventKind::kTime);
   }
   send();
   show();
-  const bool is_due = actions_.is_unfinished || wake_at_ <= port_.now();
+  const bool is_due = has_more || actions_.is_unfinished || wake_at_ <= port_.now();
   port_.wait(is_due ? Time{0} : wake_at_);
 }
 
@@ -136,9 +138,15 @@ void Module::watch_neighbours() {
   }
 }
 
-void Module::take_incoming() {
+/// Takes some of what has come in; true: there may be more. So a neighbour that floods its line
+/// keeps neither the clock waiting nor the watchdog.
+bool Module::take_incoming() {
+  constexpr int kCountMax = 2 * base::kDirectionCount;
   Incoming incoming;
-  while (!actions_.is_unfinished && port_.receive(incoming)) {
+  for (int i = 0; i < kCountMax; ++i) {
+    if (actions_.is_unfinished || !port_.receive(incoming)) {
+      return false;
+    }
     watch_neighbours();
     if (incoming.kind == FrameKind::kPlan) {
       take_plan(incoming.payload);
@@ -149,6 +157,7 @@ void Module::take_incoming() {
     }
     send();
   }
+  return true;
 }
 
 /// Gives every free line the packet that waits for it.

@@ -12,12 +12,17 @@ std::uint32_t id_of(std::span<const std::uint8_t> unique_number) {
   return hash == 0 ? 1 : hash;
 }
 
-Program::Program(const Configuration& configuration, std::uint32_t id, PlanMemory& plans,
-                 Port& port)
-    : configuration_(is_valid(configuration) ? configuration : Configuration{}),
+Program::Program(Configuration& configuration, std::uint32_t id, PlanMemory& plans, Port& port)
+    : configuration_(configuration),
       plans_(plans),
       configurer_(port, configuration_),
       instrument_(configurer_, configuration_) {
+  if (!configurer_.is_configured()) {
+    const agent::Identity own =
+        has_identity(configuration_) ? configuration_.identity : agent::Identity{};
+    configuration_ = Configuration{};
+    configuration_.identity = own;
+  }
   if (id != 0) {
     configuration_.identity.id = id;
   }
@@ -28,7 +33,7 @@ void Program::begin() {
   module_.reset();
   instrument_.speak_of(nullptr);
   if (configurer_.is_configured()) {
-    module_.emplace(configuration_, plans_, instrument_);
+    module_.emplace(configuration_.setup, configuration_.identity, plans_, instrument_);
     instrument_.speak_of(&*module_);
   }
 }

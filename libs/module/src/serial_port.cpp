@@ -7,6 +7,7 @@ namespace holdfast::module {
 bool SerialPort::receive(Incoming& incoming) {
   for (int i = 0; i < base::kDirectionCount; ++i) {
     const int at = next_;
+    next_ = next_ + 1 == base::kDirectionCount ? 0 : next_ + 1;
     Face& face = faces_[static_cast<std::size_t>(at)];
     std::uint8_t byte = 0;
     while (read(at, byte)) {
@@ -24,7 +25,6 @@ bool SerialPort::receive(Incoming& incoming) {
         return true;
       }
     }
-    next_ = next_ + 1 == base::kDirectionCount ? 0 : next_ + 1;
   }
   return false;
 }

@@ -142,6 +142,33 @@ TEST(Configurer, boards_without_a_page_become_a_robot_by_what_one_of_them_is_tol
   }
 }
 
+/// Who is told first, and the robot's numbers only after a loss of power; what is told again
+/// changes nothing and is not kept again.
+TEST(Configurer, a_board_keeps_who_it_is_before_it_knows_its_numbers) {
+  Board board(false);
+  board.config.port.context = &board;
+  start_bare(board, 9);
+  hand_in(board, 2, who(Who::What::kFixed));
+  hand_in(board, 2, who(Who::What::kAnchor, {1, 2, 3}));
+  ASSERT_EQ(board.kept.size(), HF_PAGE_BYTES);
+  EXPECT_EQ(board.verdict(), HF_NONE);
+  const Bytes kept = board.kept;
+  board.kept.clear();
+  hand_in(board, 2, who(Who::What::kFixed));
+  EXPECT_TRUE(board.kept.empty());
+  board.config.page = kept.data();
+  start_bare(board, 9);
+  run_tower({&board}, 500'000);
+  EXPECT_EQ(board.verdict(), HF_NONE);
+  EXPECT_EQ(hf_get_status(board.module)->step_count, 0U);
+  configure(board, setup_of(page_of(1, true)), 1);
+  run_tower({&board}, 3'000'000);
+  EXPECT_EQ(board.verdict(), HF_SAFE) << "it is held, so a cube in the air holds";
+  // Without an id of its own a board needs a whole page.
+  board.config.id = 0;
+  EXPECT_EQ(hf_init(board.memory.data(), sizeof(board.memory), &board.config), nullptr);
+}
+
 /// The load ratio is linear in the weight, so half of it tells that all have the new one.
 TEST(Configurer, a_later_configuration_reaches_everybody_and_an_earlier_one_nobody) {
   std::vector<Board> boards(3, Board(false));

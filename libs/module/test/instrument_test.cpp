@@ -128,6 +128,42 @@ TEST(Instrument, tells_what_has_happened_in_order_and_once) {
   EXPECT_EQ(first, next);
 }
 
+/// The upper two bits of a packet's second byte are its version (docs/wire.md).
+TEST(Instrument, tells_once_that_a_neighbour_has_another_version) {
+  Board board(false);
+  const Bytes page = page_of(1, true);
+  board.start(page);
+  run(board, 100'000);
+  const auto hand_in = [&](std::uint8_t version) {
+    std::array<std::uint8_t, kFrameBytesMax> frame{};
+    const auto second = static_cast<std::uint8_t>(version << 6U);
+    const int size = write_frame(FrameKind::kPacket, Bytes{0xc0, second, 1, 2, 3, 4, 5}, frame);
+    hf_receive(board.module, 2, frame.data(), static_cast<std::size_t>(size));
+    run(board, 10'000);
+  };
+  hand_in(1);
+  hand_in(2);
+  hand_in(2);
+  std::vector<LogEntry> log;
+  std::uint16_t first = 0;
+  for (std::uint16_t from = 0; from < 32; from = static_cast<std::uint16_t>(from + 8)) {
+    taken(board, 0, FrameKind::kLog);
+    ask(board, 0, {.what = Ask::kLog, .log_from = from});
+    std::vector<LogEntry> some = entries(taken(board, 0, FrameKind::kLog).at(0), first);
+    some.resize(std::min<std::size_t>(some.size(), 8));
+    log.insert(log.end(), some.begin(), some.end());
+  }
+  int count = 0;
+  for (const LogEntry& entry : log) {
+    if (entry.what == LogEntry::What::kOtherVersion) {
+      ++count;
+      EXPECT_EQ(entry.value, 2);
+      EXPECT_EQ(entry.number, 2);
+    }
+  }
+  EXPECT_EQ(count, 1);
+}
+
 TEST(Instrument, keeps_the_latest_of_a_long_log_and_says_from_where) {
   Board board(false);
   const Bytes page = page_of(1, true);

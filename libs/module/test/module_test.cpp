@@ -90,7 +90,7 @@ TEST(Module, alone_and_fixed_is_safe_and_shows_blue) {
   const Configuration configuration = lonely();
   PlanMemory plans{};
   ScriptedPort port;
-  Module module(configuration, plans, port);
+  Module module(configuration.setup, configuration.identity, plans, port);
   for (int i = 0; i < 100; ++i) {
     module.run_once();
   }
@@ -103,7 +103,7 @@ TEST(Module, greets_a_neighbour_each_time_it_comes) {
   const Configuration configuration = lonely();
   PlanMemory plans{};
   ScriptedPort port;
-  Module module(configuration, plans, port);
+  Module module(configuration.setup, configuration.identity, plans, port);
   port.connected = 1 << 3;
   module.run_once();
   ASSERT_FALSE(port.sent.empty());
@@ -125,7 +125,7 @@ TEST(Module, a_neighbour_that_is_gone_is_not_forgotten) {
   const Configuration configuration = lonely();
   PlanMemory plans{};
   ScriptedPort port;
-  Module module(configuration, plans, port);
+  Module module(configuration.setup, configuration.identity, plans, port);
   port.connected = 1 << 0;
   module.run_once();
   port.connected = 0;
@@ -141,14 +141,14 @@ TEST(Module, remembers_a_plan_over_a_reset) {
   PlanMemory plans{};
   {
     ScriptedPort port;
-    Module module(configuration, plans, port);
+    Module module(configuration.setup, configuration.identity, plans, port);
     // Far away from the robot: no verdict on such a robot is possible.
     port.plans = {{9, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}};
     module.run_once();
     EXPECT_EQ(module.status().plan_count, 1U);
   }
   ScriptedPort port;
-  Module module(configuration, plans, port);
+  Module module(configuration.setup, configuration.identity, plans, port);
   for (int i = 0; i < 100; ++i) {
     module.run_once();
   }
@@ -174,7 +174,7 @@ Packet frame_of(const base::Cell& cell, bool is_withdrawal = false) {
 Status started(PlanMemory& plans, const std::vector<Packet>& told) {
   const Configuration configuration = lonely();
   ScriptedPort port;
-  Module module(configuration, plans, port);
+  Module module(configuration.setup, configuration.identity, plans, port);
   port.plans = told;
   for (int i = 0; i < 100; ++i) {
     module.run_once();
@@ -225,7 +225,7 @@ TEST(Module, remembers_a_withdrawal_over_a_reset) {
   PlanMemory plans{};
   {
     ScriptedPort port;
-    Module module(configuration, plans, port);
+    Module module(configuration.setup, configuration.identity, plans, port);
     port.connected = 1;
     port.plans = {frame_of({9, 0, 0}, true)};
     module.run_once();
@@ -266,7 +266,7 @@ TEST(Module, starts_without_plans_when_its_memory_is_noise) {
   PlanMemory plans{};
   std::memset(static_cast<void*>(&plans), 0xa5, sizeof(plans));
   ScriptedPort port;
-  const Module module(configuration, plans, port);
+  const Module module(configuration.setup, configuration.identity, plans, port);
   EXPECT_EQ(module.status().plan_count, 0U);
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,6 +24,13 @@ struct InstrumentOptions {
   bool is_once = false;   ///< listen(): only what every module has come to, in detail.
 };
 
+/// One thing that has been heard, as a line for people and as one of JSON
+/// (docs/schemas/listen.schema.json).
+struct HeardLine {
+  std::string text;
+  std::string json;
+};
+
 /// What several modules have come to.
 struct Heard {
   agent::Verdict verdict = agent::Verdict::kNone;  ///< kUndecided if they do not agree.
@@ -33,7 +41,7 @@ struct Heard {
 /// `simulate --story`; as long as `goes_on` says so. Errors: a device cannot be opened; a module
 /// speaks another version.
 base::Result<Heard> listen(std::span<const std::string> devices, const InstrumentOptions& options,
-                           const std::function<void(const std::string& line)>& tell,
+                           const std::function<void(const HeardLine& line)>& tell,
                            const std::function<bool()>& goes_on);
 
 /// What a module is to be told.
@@ -59,8 +67,22 @@ struct Telling {
 base::Result<std::string> tell(const std::string& device, const Telling& telling,
                                const InstrumentOptions& options = {});
 
+/// A module on the table, side by side with its twin.
+struct TwinModule {
+  struct Row {
+    std::string what;
+    std::string table;
+    std::string twin;
+  };
+
+  std::string device;
+  std::uint32_t id = 0;
+  std::optional<base::Cell> cell;  ///< None: it does not know it.
+  std::vector<Row> rows;           ///< None: the file has no module there.
+};
+
 struct TwinReport {
-  std::vector<std::string> lines;        ///< The table and its twin, side by side.
+  std::vector<TwinModule> modules;
   std::vector<std::string> differences;  ///< Each in a sentence; none: they are the same.
 };
 
@@ -72,6 +94,37 @@ struct TwinReport {
 base::Result<TwinReport> compare_with_twin(std::span<const std::string> devices,
                                            const Structure& structure,
                                            const InstrumentOptions& options = {});
+
+/// What has become of one case of the conformance program.
+struct ConformanceCase {
+  enum class Outcome : std::uint8_t {
+    kPassed,
+    kFailed,
+    kAbsent,  ///< What it is about is not in this module; `found` says why.
+  };
+
+  std::string section;
+  std::string name;
+  Outcome outcome = Outcome::kPassed;
+  int attempts = 1;      ///< What fails is tried three times.
+  std::string sent;      ///< The last bytes that were said, hexadecimal.
+  std::string expected;  ///< What of the first thing that was not as it should be.
+  std::string found;
+};
+
+/// The page of configuration of the module under test: one that is the anchor, on the floor.
+std::vector<std::uint8_t> conformance_page();
+
+/// What cases are about, in the order in which they are tried.
+std::vector<std::string> conformance_sections();
+
+/// Is the neighbour of a module, at its face +x, and tries whether it keeps to docs/wire.md. The
+/// module has conformance_page(), and nobody at its other faces. Tries the cases of a section of
+/// conformance_sections(), or all if it is empty. Tells each when it is over; ends early if `tell`
+/// returns false. Errors: the device cannot be opened; nobody is there.
+base::Result<std::vector<ConformanceCase>> check_conformance(
+    const std::string& device, const std::string& section, const InstrumentOptions& options,
+    const std::function<bool(const ConformanceCase&)>& tell);
 
 /// Opens a serial line as one out of an emulated robot (emulator::OutsideLine).
 base::Result<std::unique_ptr<emulator::Channel>> open_channel(const std::string& device,

@@ -75,6 +75,12 @@ struct EmulationOptions {
   bool tells_planned = true;     ///< False: nobody is told of them but by `announcements`.
   /// Announcements in the order of their times, each on a face of the module that is free then.
   std::vector<sim::Announcement> announcements = {};
+  /// Boards without a page of configuration: the robot's numbers are told to `plan_module`, the
+  /// anchor and modules that are held who they are, each at a free face. Only images that take a
+  /// configuration by message. With lines from outside nobody tells them but who is there.
+  bool is_bare = false;
+  bool has_ids = true;    ///< Else pages name no id, and a module's is of its chip's unique number.
+  Time tell_at = 50'000;  ///< When, and so long after a module is attached.
   /// The module's clocks are too fast or too slow by so many millionths, at random.
   std::uint32_t clock_off_ppm = 0;
   bool has_crystals = true;    ///< Boards without run on their internal oscillators.
@@ -96,6 +102,7 @@ struct FirmwareReport {
   std::uint64_t mismatch_count = 0;  ///< Steps in which image and host differ.
   std::uint64_t lost_bytes = 0;      ///< That came to a USART that was not ready, or too fast.
   std::uint32_t watchdog_count = 0;  ///< Modules that their watchdogs have started again.
+  std::uint32_t erase_count = 0;     ///< Pages of flash that modules have erased to keep others.
   Time planned_at = 0;               ///< When the last plan was complete; 0: there is none.
 };
 
@@ -109,6 +116,9 @@ struct ModuleView {
 /// What each existing module knows before it starts, as the bytes of its page in flash.
 std::vector<std::vector<std::uint8_t>> configuration_pages(const model::Robot& robot,
                                                            const EmulationOptions& options);
+
+/// The page of a module that is neither the anchor nor held, whichever it is: it names no id.
+std::vector<std::uint8_t> common_page(const model::Robot& robot, const EmulationOptions& options);
 
 /// Was this built with Unicorn? Without, no Emulation may be made.
 bool is_available();
@@ -143,7 +153,8 @@ class Emulation {
   std::unique_ptr<EmulatedModules> modules_;
 };
 
-/// Why options do not fit the robot, if they do not.
+/// Why options do not fit the robot, or the image, if they do not.
+std::optional<std::string> find_image_fault(const Image& image, const EmulationOptions& options);
 std::optional<std::string> find_options_fault(const model::Robot& robot,
                                               const EmulationOptions& options);
 

@@ -26,6 +26,12 @@ struct Image {
   /// A symbol's value; it must be there.
   std::uint32_t at(const std::string& symbol) const;
 
+  /// Takes the program its configuration by message, and keep it in the last 4 KB of its flash?
+  bool writes_flash() const { return symbols.contains("holdfast_configuration_in_use"); }
+
+  /// The first address behind the flash of the part that it is for.
+  std::uint32_t flash_end() const;
+
   /// The number that is stored at a symbol in flash.
   std::uint32_t word(const std::string& symbol) const;
 };

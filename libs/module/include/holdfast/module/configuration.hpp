@@ -15,6 +15,8 @@
 namespace holdfast::module {
 
 inline constexpr std::uint32_t kConfigurationMagic = 0x46434648;  ///< "HFCF"
+/// "HFID": the module was told who it is, and not yet the robot's numbers.
+inline constexpr std::uint32_t kIdentityMagic = 0x44494648;
 inline constexpr std::uint16_t kConfigurationVersion = 1;
 
 struct Configuration {
@@ -62,5 +64,8 @@ std::uint32_t checksum_of(const Configuration& configuration);
 
 /// Is this a configuration that the program can use?
 bool is_valid(const Configuration& configuration);
+
+/// Does it say at least who the module is?
+bool has_identity(const Configuration& configuration);
 
 }  // namespace holdfast::module

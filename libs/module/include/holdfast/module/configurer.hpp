@@ -25,7 +25,8 @@ class Configurer final : public RelayedPort {
   Configurer(Port& port, Configuration& configuration);
 
   /// Has the module been told something since the last call? Then its configuration is another one
-  /// now, and the program has to begin anew.
+  /// now, kept by the port, and the program has to begin anew; false also if it is told who it is
+  /// before it has a configuration.
   bool take_change();
 
   bool is_configured() const { return is_configured_; }

@@ -36,6 +36,7 @@ class Instrument final : public RelayedPort {
 
   void log(LogEntry::What what, std::uint8_t value, std::uint16_t number = 0,
            const base::Cell& cell = {});
+  void log_other_version(const Incoming& packet);
   void log_plan(std::span<const std::uint8_t> payload);
   void note();
   void note_neighbours();
@@ -46,6 +47,7 @@ class Instrument final : public RelayedPort {
   const Module* module_ = nullptr;
   Status last_;
   std::uint8_t connected_ = 0;
+  std::uint8_t others_ = 0;  ///< Faces whose neighbours' packets are of another version, by bit.
   std::array<std::uint8_t, base::kDirectionCount> asked_{};  ///< Ask::what, by face.
   std::uint16_t log_from_ = 0;                               ///< What the last one who asked wants.
   std::uint16_t log_next_ = 0;

@@ -11,7 +11,7 @@
 /// The program of a module around its agent: from what a port offers to events, and from actions
 /// back to the port. No algorithm.
 ///
-///     Module module(configuration, plans, port);
+///     Module module(configuration.setup, configuration.identity, plans, port);
 ///     for (;;) module.run_once();
 ///
 /// A neighbour that is heard for the first time, or again after it was gone, is a link that comes
@@ -56,8 +56,8 @@ static_assert(sizeof(Status) == 40);
 
 class Module {
  public:
-  /// Keeps references to all three.
-  Module(const Configuration& configuration, PlanMemory& plans, Port& port);
+  /// Keeps references to all but the identity.
+  Module(const agent::Setup& setup, const agent::Identity& identity, PlanMemory& plans, Port& port);
 
   /// Does what there is to do, then waits for more.
   void run_once();
@@ -79,7 +79,7 @@ class Module {
   void keep_plans();
   void take_plan(std::span<const std::uint8_t> payload);
   void watch_neighbours();
-  void take_incoming();
+  bool take_incoming();
   void send();
   void show();
 

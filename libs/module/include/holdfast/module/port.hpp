@@ -37,7 +37,7 @@ class Port {
   /// Differs from one call to the next and from one start to the next.
   virtual std::uint16_t random() = 0;
 
-  /// The next thing that came in; false: nothing is there.
+  /// The next thing that came in, of all faces in turn; false: nothing is there.
   virtual bool receive(Incoming& incoming) = 0;
 
   /// Is a neighbour heard at this face?

@@ -15,9 +15,9 @@ namespace holdfast::module {
 /// blinks in cyan.
 class Program {
  public:
-  /// Keeps references to plans and port; the configuration is copied, and may be invalid. An `id`
-  /// other than 0, from the chip's unique number, replaces the configuration's.
-  Program(const Configuration& configuration, std::uint32_t id, PlanMemory& plans, Port& port);
+  /// Keeps references. The configuration may be invalid, and becomes what the module is told. An
+  /// `id` other than 0, from the chip's unique number, replaces the configuration's.
+  Program(Configuration& configuration, std::uint32_t id, PlanMemory& plans, Port& port);
 
   /// Does what there is to do, then waits for more.
   void run_once();
@@ -35,7 +35,7 @@ class Program {
   void begin();
   void wait_for_configuration();
 
-  Configuration configuration_;
+  Configuration& configuration_;
   PlanMemory& plans_;
   Configurer configurer_;
   Instrument instrument_;

@@ -65,15 +65,16 @@ struct StatusReport {
 /// One thing that has happened at a module.
 struct LogEntry {
   enum class What : std::uint8_t {
-    kStarted,    ///< value: the reset's reason, 0 if the board does not say.
-    kJoined,     ///< number: the epoch of the round.
-    kPhase,      ///< value: agent::Phase
-    kVerdict,    ///< value: agent::Verdict; number: agent::Reason
-    kPlan,       ///< cell
-    kWithdraw,   ///< cell
-    kHeard,      ///< value: the face at which a neighbour is heard.
-    kUnheard,    ///< value: the face at which it is heard no more.
-    kConfigured  ///< number: the revision that the module has taken.
+    kStarted,      ///< value: the reset's reason, 0 if the board does not say.
+    kJoined,       ///< number: the epoch of the round.
+    kPhase,        ///< value: agent::Phase
+    kVerdict,      ///< value: agent::Verdict; number: agent::Reason
+    kPlan,         ///< cell
+    kWithdraw,     ///< cell
+    kHeard,        ///< value: the face at which a neighbour is heard.
+    kUnheard,      ///< value: the face at which it is heard no more.
+    kConfigured,   ///< number: the revision that the module has taken.
+    kOtherVersion  ///< value: the face at which packets of another version come; number: which.
   };
 
   std::uint32_t time_us = 0;
@@ -119,6 +120,11 @@ struct ConfigurationPart {
 };
 
 inline constexpr std::size_t kPartHeaderBytes = 5;
+
+/// Writes the payload of a part of a setup, kSetupBytes as they lie in a page. Returns its size;
+/// 0: there are not so many parts.
+std::size_t write_part(std::span<const std::uint8_t> setup, std::uint16_t revision,
+                       std::uint8_t index, std::span<std::uint8_t, kPayloadBytesMax> payload);
 
 /// Calls the codec for every field of a frame, in the order of the bytes: the one place that knows.
 template <class Codec>
