@@ -105,6 +105,7 @@ export class App {
       placeLabels(this.stage, this.view, this.robot, this.isToppled ? undefined : this.shown),
     );
     followTheme(() => this.setTheme());
+    this.setTheme();
   }
 
   /** The robot in the picture. */

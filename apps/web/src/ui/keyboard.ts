@@ -19,6 +19,7 @@ export const KEYS: readonly [keys: string, text: string][] = [
   ['Q  E  +  −', 'turn left, turn right, nearer, further'],
   ['H  W', 'see all, see the worst connection'],
   ['6  7  8  9', 'see it from the front right, the front, the right, above'],
+  ['5', 'orthographic, or in perspective'],
   ['X  M', 'see through the modules; the picture alone, for an audience'],
   ['T', 'let it topple or break, if it does; put it together again'],
   ['K  ,  .', 'the robot’s own computation: play or pause, step back, step on'],

@@ -13,6 +13,7 @@ import { drawBands } from './bands';
 import { byId, counted, icon, say, tell, type IconName } from './dom';
 import { openText, take } from './files';
 import { findingOf } from './stage_finding';
+import { followTheme } from './theme';
 
 /** Steps in time: judges every stage of a robot's sequence, plays it, records another. */
 
@@ -66,7 +67,7 @@ export class Timeline {
       this.show(Number((event.target as HTMLInputElement).value));
     };
     byId('bands').onclick = (event) => this.pointAt(event);
-    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.drawBands());
+    followTheme(() => this.drawBands());
     byId('scale').addEventListener('change', () => this.drawBands());
   }
 
