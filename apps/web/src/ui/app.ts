@@ -18,7 +18,7 @@ import type { Section } from '../view/section';
 import { OBLIQUE, Stage } from '../view/stage';
 import { connectionText, showDetails, showFaceLegend, showFacetLegend, showFinding, showLegend } from './answer_panel';
 import { showChip, trialText } from './chip';
-import { byId, clearErrors, make, say, tell } from './dom';
+import { byId, clearErrors, make, reasonOf, say, tell } from './dom';
 import { placeLabels } from './labels';
 import { followTheme, setTheme } from './theme';
 import { Tip } from './tip';
@@ -323,7 +323,7 @@ export class App {
     if (this.fall) {
       this.straighten();
       this.toppling.start(this.bench.robot, this.finding!).catch((error: unknown) => {
-        tell(error instanceof Error ? error.message : String(error), true);
+        tell(reasonOf(error), true);
       });
     }
   }

@@ -7,6 +7,7 @@ import type { Section } from '../view/section';
 import type { App } from './app';
 import { byId, say } from './dom';
 import { chooseTheme } from './theme';
+import { digits, t } from '../texts';
 
 /** How the robot is looked at: from which side, cut open, through its modules, before an audience. */
 
@@ -65,7 +66,7 @@ export function makeLooking(app: App): Record<string, () => void> {
 function present(isOn: boolean): void {
   document.body.classList.toggle('presenting', isOn);
   if (isOn) {
-    say('the picture alone; M brings the rest back');
+    say(t('the picture alone; M brings the rest back'));
   }
 }
 
@@ -103,7 +104,7 @@ class Cut {
     const cut = CUTS[this.side.value];
     const value = Number(this.slider.value);
     this.app.setSection(cut && { ...cut, at: value });
-    byId('cut-value').textContent = cut ? `${'xyz'[cut.axis]} ${cut.sense > 0 ? '≤' : '≥'} ${value.toFixed(1)}` : '';
+    byId('cut-value').textContent = cut ? `${'xyz'[cut.axis]} ${cut.sense > 0 ? '≤' : '≥'} ${digits(value.toFixed(1))}` : '';
   }
 }
 

@@ -3,6 +3,7 @@
 import { LOAD_STEPS, css, loadColour, stepColours, type Rgb } from '../view/colours';
 import type { App } from './app';
 import { byId } from './dom';
+import { digits, t } from '../texts';
 
 /** The picture as one takes it away: on a ground, with its name, the verdict and what the colours mean. */
 
@@ -32,7 +33,7 @@ export function makePoster(app: App): Promise<Blob | null> {
   write([...word.childNodes].map((part) => part.textContent).join('  '), 24, MARGIN + 20, getComputedStyle(word).color, true);
   write(byId('chip-numbers').textContent ?? '', 14, MARGIN + 42, ink);
   const { robot } = app;
-  write([robot.name, `1 module = ${robot.pitchMm} mm`, 'holdfast'].filter(Boolean).join(' · '), 13, poster.height / ratio - MARGIN, quiet);
+  write([robot.name, t('1 module = {0} mm', digits(String(robot.pitchMm))), 'holdfast'].filter(Boolean).join(' · '), 13, poster.height / ratio - MARGIN, quiet);
   if (!app.view.losses && !app.view.hasOwnColours) {
     drawLegend(context, app, poster.height / ratio - MARGIN - 54, quiet);
   }
@@ -45,7 +46,7 @@ const STEP_WIDTH = 46;
 function drawLegend(context: CanvasRenderingContext2D, { view }: App, top: number, ink: string): void {
   const isOfSteps = view.subject === 'connections';
   const bar: Rgb[] = isOfSteps ? stepColours(view.scale) : Array.from({ length: 40 }, (_, i) => loadColour(view.scale, (i + 0.5) / 40));
-  const ticks = isOfSteps ? ['0', ...LOAD_STEPS.map((most) => (most === Infinity ? '' : String(most)))] : ['0', '1'];
+  const ticks = isOfSteps ? ['0', ...LOAD_STEPS.map((most) => (most === Infinity ? '' : digits(String(most))))] : ['0', '1'];
   const whole = isOfSteps ? STEP_WIDTH * bar.length : 4 * STEP_WIDTH;
   const part = whole / bar.length;
   bar.forEach((colour, i) => {
@@ -55,5 +56,5 @@ function drawLegend(context: CanvasRenderingContext2D, { view }: App, top: numbe
   context.fillStyle = ink;
   context.font = context.font.replace(/\d+px/, '12px');
   ticks.forEach((text, i) => context.fillText(text, MARGIN + (i * whole) / (isOfSteps ? bar.length : 1) - (i > 0 ? 4 : 0), top + 24));
-  context.fillText('share of the connection’s strength', MARGIN + whole + 14, top + 10);
+  context.fillText(t('share of the connection’s strength'), MARGIN + whole + 14, top + 10);
 }

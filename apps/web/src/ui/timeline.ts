@@ -10,10 +10,11 @@ import { STAGES, Sequence, type StageRobot } from '../model/sequence';
 import type { App } from './app';
 import { formatRatio, numberText } from './answer_panel';
 import { drawBands } from './bands';
-import { byId, counted, icon, say, tell, type IconName } from './dom';
+import { byId, icon, reasonOf, say, tell, type IconName } from './dom';
 import { openText, take } from './files';
 import { findingOf } from './stage_finding';
 import { followTheme } from './theme';
+import { counted, t } from '../texts';
 
 /** Steps in time: judges every stage of a robot's sequence, plays it, records another. */
 
@@ -104,7 +105,7 @@ export class Timeline {
     const { recorder } = this;
     this.recorder = undefined;
     if (recorder.steps.length > 0) {
-      bench.history.replace(`recording ${counted(recorder.steps.length, 'step')}`, recorder.result(bench.robot));
+      bench.history.replace(t('recording {0}', counted(recorder.steps.length, 'step')), recorder.result(bench.robot));
     }
     this.showRecording();
     this.changed();
@@ -131,7 +132,7 @@ export class Timeline {
     if (this.recorder && what === 'robot') {
       const { steps } = this.recorder;
       this.recorder = undefined;
-      tell(`The recording has ended, as another robot is here; ${counted(steps.length, 'step')} of it are not kept.`);
+      tell(t('The recording has ended, as another robot is here; {0} of it are not kept.', counted(steps.length, 'step')));
     }
     this.recorder?.follow(robot, history.isUndoing);
     this.showRecording();
@@ -169,7 +170,7 @@ export class Timeline {
   private async judge(): Promise<void> {
     const { robot } = this.app.bench;
     byId('judge-steps').hidden = true;
-    const judged = await this.wait('Judging every stage …', () =>
+    const judged = await this.wait(t('Judging every stage …'), () =>
       this.client.judgeSteps(robot.toData(true).data, robot.name, robot.base),
     );
     if (judged) {
@@ -199,7 +200,7 @@ export class Timeline {
     const { robot } = bench;
     this.buildOn();
     this.forget();
-    const found = await this.wait(`Seeking an order, for ${ORDER_SECONDS} s at most …`, () =>
+    const found = await this.wait(t('Seeking an order, for {0} s at most …', ORDER_SECONDS), () =>
       this.client.findOrder(robot.toData(true).data, ORDER_SECONDS, robot.name, robot.base),
     );
     if (found?.structure) {
@@ -225,8 +226,8 @@ export class Timeline {
       answer = await ask();
       text = '';
     } catch (error) {
-      const reason = error instanceof Error ? error.message : String(error);
-      text = error instanceof Cancelled ? 'Stopped.' : reason;
+      const reason = reasonOf(error);
+      text = error instanceof Cancelled ? t('Stopped.') : reason;
     }
     if (question !== this.question) {
       return undefined;
@@ -261,7 +262,7 @@ export class Timeline {
     this.at = at;
     this.begun = performance.now();
     this.loads = this.known.get(at);
-    this.app.bench.closed = 'A stage of the steps is shown: “Back to building” ends that.';
+    this.app.bench.closed = t('A stage of the steps is shown: “Back to building” ends that.');
     this.exhibit(this.isMoving ? 0 : (this.report!.waypoint ?? 0));
     this.showPlace();
     if (!this.loads) {
@@ -325,7 +326,7 @@ export class Timeline {
       }
     } catch (error) {
       if (!(error instanceof Cancelled)) {
-        tell(error instanceof Error ? error.message : String(error), true);
+        tell(reasonOf(error), true);
       }
     }
   }
@@ -372,7 +373,7 @@ export class Timeline {
   private showPlaying(): void {
     const button = byId('stages-play');
     button.replaceChildren(icon(this.isPlaying ? 'pause' : 'play'));
-    button.setAttribute('aria-label', this.isPlaying ? 'Pause the steps' : 'Play the steps');
+    button.setAttribute('aria-label', this.isPlaying ? t('Pause the steps') : t('Play the steps'));
   }
 
   /** Where in the sequence the picture is. */
@@ -391,10 +392,11 @@ export class Timeline {
   private placeText(): string {
     const { report, judged } = this;
     if (!report || !judged) {
-      return 'The robot before the first step.';
+      return t('The robot before the first step.');
     }
-    const what = `Step ${this.stepIndex} (of 0 to ${judged.texts.length - 1}), ${STAGES[this.stage]}: ${report.verdict}`;
-    return `${what}. It does: ${judged.texts[this.stepIndex]}.`;
+    const last = judged.texts.length - 1;
+    const names = [t(STAGES[this.stage]), t(report.verdict)] as const;
+    return t('Step {0} (of 0 to {1}), {2}: {3}. It does: {4}.', this.stepIndex, last, ...names, judged.texts[this.stepIndex]);
   }
 
   private drawBands(): void {
@@ -408,7 +410,7 @@ export class Timeline {
     const { recorder } = this;
     const button = byId('record');
     button.setAttribute('aria-pressed', String(recorder !== undefined));
-    button.textContent = recorder ? 'End the recording' : 'Record steps';
+    button.textContent = recorder ? t('End the recording') : t('Record steps');
     if (recorder) {
       byId('sequence-text').textContent = recordingText(recorder);
     }
@@ -421,7 +423,7 @@ export class Timeline {
 }
 
 const recordingText = ({ steps }: Recorder) =>
-  `Recording: ${counted(steps.length, 'step')}. Every change of the modules is one.`;
+  t('Recording: {0}. Every change of the modules is one.', counted(steps.length, 'step'));
 
 function hasPlanned(robot: EditedRobot): boolean {
   return Array.from({ length: robot.count }, (_, slot) => robot.roleAt(slot)).includes(Role.kPlanned);
@@ -430,8 +432,8 @@ function hasPlanned(robot: EditedRobot): boolean {
 function summary({ report, texts }: JudgedSteps): string {
   const isSafe = ({ stages }: (typeof report.steps)[number]) => STAGES.every((stage) => stages[stage].verdict === 'safe');
   const safe = report.steps.filter(isSafe).length;
-  const ratio = report.load_ratio_max === null ? '' : `; largest load ${formatRatio(report.load_ratio_max)}`;
-  const margin = report.margin_min_mm === null ? '' : `; smallest margin ${numberText(report.margin_min_mm)} mm`;
-  const first = report.first_unsafe ? `; first unsafe: step ${report.first_unsafe.step}, ${report.first_unsafe.stage}` : '';
-  return `${safe} of ${counted(texts.length, 'step')} safe in every stage${ratio}${margin}${first}.`;
+  const ratio = report.load_ratio_max === null ? '' : `; ${t('largest load {0}', formatRatio(report.load_ratio_max))}`;
+  const margin = report.margin_min_mm === null ? '' : `; ${t('smallest margin {0} mm', numberText(report.margin_min_mm))}`;
+  const first = report.first_unsafe ? `; ${t('first unsafe: step {0}, {1}', report.first_unsafe.step, t(report.first_unsafe.stage))}` : '';
+  return `${t('{0} of {1} safe in every stage', safe, counted(texts.length, 'step'))}${ratio}${margin}${first}.`;
 }
