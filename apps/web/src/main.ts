@@ -15,6 +15,7 @@ import { ChallengePanel } from './ui/challenges';
 import { Collapse } from './ui/collapse';
 import { ConnectionTable } from './ui/connections';
 import { DeformedPanel } from './ui/deformed';
+import { FlowPanel } from './ui/flow';
 import { openGallery } from './ui/gallery';
 import { Keeper } from './ui/keeper';
 import { KEYS, listenToKeys } from './ui/keyboard';
@@ -32,7 +33,7 @@ import { digits, t, translatePage, word, type Text } from './texts';
 
 declare global {
   /** A handle for the browser's console, and for the tests. */
-  var holdfast: { bench: Workbench; app: App; player: Player; timeline: Timeline; reportOf: typeof reportOf; write: typeof write };
+  var holdfast: { bench: Workbench; app: App; flow: FlowPanel; player: Player; timeline: Timeline; reportOf: typeof reportOf; write: typeof write };
 }
 
 const TOOLS: readonly [tool: Tool, text: Text, key: string][] = [
@@ -215,7 +216,7 @@ function begin(): void {
   const app = new App(bench);
   const player = new Player(app);
   const timeline = new Timeline(app);
-  globalThis.holdfast = { bench, app, player, timeline, reportOf, write };
+  globalThis.holdfast = { bench, app, flow: new FlowPanel(app), player, timeline, reportOf, write };
   const keeper = new Keeper(bench);
   makeTools(bench);
   makeDialogs();
@@ -226,7 +227,8 @@ function begin(): void {
   new LossPanel(app);
   new DeformedPanel(app);
   new BreakingPanel(app);
-  const actions = { ...makeActions(app, player, timeline), ...makeLooking(app) };
+  const looking = makeLooking(app);
+  const actions: Record<string, () => void> = { ...makeActions(app, player, timeline), ...looking, n: () => globalThis.holdfast.flow.next() };
   listenToPointer(app);
   listenToKeys(app, actions);
   listenToFiles(bench);

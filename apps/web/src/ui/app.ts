@@ -80,6 +80,8 @@ export class App {
   private readonly obstacles = new ObstacleView();
   private readonly facets = new FacetView();
   private readonly loads = new LoadView();
+  /** What is drawn in the colour of writing. */
+  private readonly inked: { setInk(ink: number): void }[] = [this.obstacles, this.loads];
   readonly toppling = new Toppling(this.stage, this.view, this.ground, () => this.fallListeners.forEach((tell) => tell()));
   /** Called when a fall is asked for, begins or ends. */
   readonly fallListeners: (() => void)[] = [];
@@ -173,6 +175,12 @@ export class App {
     this.setTheme();
   }
 
+  /** Another thing in the colour of writing. */
+  addInked(one: { setInk(ink: number): void }): void {
+    this.inked.push(one);
+    this.setTheme();
+  }
+
   /** Called when something else is shown, or something else is known of it. */
   readonly shownListeners: (() => void)[] = [];
 
@@ -199,7 +207,7 @@ export class App {
   }
 
   /** Loads inside the robot are seen, through its modules. */
-  lookThrough(isOn: boolean): void {
+  lookThrough(isOn: boolean = this.view.xray): void {
     this.stopTopple();
     this.view.xray = isOn;
     this.showRobot();
@@ -242,7 +250,16 @@ export class App {
     const place = new Vector3().fromArray(lattice.place(cell));
     this.tip.pin(side === undefined ? place : place.addScaledVector(new Vector3().fromArray(lattice.units[side]), 0.5));
     this.isPinned = true;
+    this.pinListeners.forEach((tell) => tell());
   }
+
+  /** The module that is pinned, or one end of the connection that is. */
+  get picked(): Cell | undefined {
+    return this.isPinned ? this.pointedCell : undefined;
+  }
+
+  /** Called when something else is pinned, or nothing. */
+  readonly pinListeners: (() => void)[] = [];
 
   /** False if nothing was pinned. */
   unpin(): boolean {
@@ -251,6 +268,7 @@ export class App {
     if (isPinned) {
       this.tip.pin(undefined);
       this.point(undefined);
+      this.pinListeners.forEach((tell) => tell());
     }
     return isPinned;
   }
@@ -482,7 +500,7 @@ export class App {
   }
 
   private setTheme(): void {
-    setTheme(this.view, this.ground, [this.obstacles, this.loads]);
+    setTheme(this.view, this.ground, this.inked);
     this.showRobot();
   }
 }

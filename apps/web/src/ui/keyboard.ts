@@ -22,6 +22,7 @@ export const KEYS: readonly [keys: string, text: Text][] = [
   ['6  7  8  9', 'see it from the front right, the front, the right, above'],
   ['5', 'orthographic, or in perspective'],
   ['X  M', 'see through the modules; the picture alone, for an audience'],
+  ['N', 'how forces flow to the ground: N, V, M, T, and none again'],
   ['T', 'let it topple or break, if it does; put it together again'],
   ['K  ,  .', 'the robot’s own computation: play or pause, step back, step on'],
   ['S  U  R', 'steps: play or pause, to the first unsafe stage, record'],
