@@ -23,6 +23,7 @@ import { offerLanguages } from './ui/language';
 import { makeLooking } from './ui/looking';
 import { makeMaterial } from './ui/material';
 import { Player } from './ui/player';
+import { printPoster } from './ui/poster';
 import { listenToPointer } from './ui/pointer';
 import { openFirst, showWithoutPicture } from './ui/start';
 import { makeSurroundings } from './ui/surroundings';
@@ -233,6 +234,7 @@ function begin(): void {
   listenToKeys(app, actions);
   listenToFiles(bench);
   offerLanguages(bench);
+  printPoster(app);
   bench.robotListeners.push(() => (byId('hint').hidden ||= bench.history.canUndo));
   for (const [id, name] of [['undo', 'undo'], ['redo', 'redo'], ['fit', 'fit']] as const) {
     byId(id).append(icon(name));

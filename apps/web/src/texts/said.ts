@@ -217,6 +217,8 @@ export const SAID_TEXTS = {
   '{0}: cannot be read': '{0} : illisible',
   'the link is broken: it may have been cut; nothing was opened': 'le lien est rompu : il a peut-être été coupé ; rien n’a été ouvert',
   'the link': 'le lien',
+  'nothing moves: let it break or topple, or show its steps, then save it': 'rien ne bouge : laissez-le casser ou basculer, ou montrez ses étapes, puis enregistrez',
+  'drawing what moves …': 'dessine ce qui bouge …',
   'the browser gives no picture': 'le navigateur ne donne pas d’image',
   'It opens on this computer only, as this page is a file here.': 'Il ne s’ouvre que sur cet ordinateur, car cette page y est un fichier.',
   'too large for a link ({0} letters): save it as a file': 'trop grand pour un lien ({0} lettres) : enregistrez-le comme fichier',

@@ -19,6 +19,7 @@ import { OBLIQUE, Stage } from '../view/stage';
 import { connectionText, showDetails, showFaceLegend, showFacetLegend, showFinding, showLegend } from './answer_panel';
 import { showChip, trialText } from './chip';
 import { byId, clearErrors, make, reasonOf, say, tell } from './dom';
+import type { Film } from './film';
 import { placeLabels } from './labels';
 import { followTheme, setTheme } from './theme';
 import { Tip } from './tip';
@@ -77,7 +78,7 @@ export class App {
   /** Called before something else is shown than what is built, with what: one mode at a time. */
   readonly exhibitListeners: ((mode: Mode) => void)[] = [];
   private readonly ground = new Ground();
-  private readonly obstacles = new ObstacleView();
+  readonly obstacles = new ObstacleView();
   private readonly facets = new FacetView();
   private readonly loads = new LoadView();
   /** What is drawn in the colour of writing. */
@@ -174,6 +175,9 @@ export class App {
     showFaceLegend(scale);
     this.setTheme();
   }
+
+  /** What may move: each begins its film, or has none now. */
+  readonly films: (() => Film | undefined)[] = [];
 
   /** Another thing in the colour of writing. */
   addInked(one: { setInk(ink: number): void }): void {
@@ -337,10 +341,10 @@ export class App {
     slider.dispatchEvent(new Event('input'));
   }
 
-  startTopple(): void {
+  async startTopple(): Promise<void> {
     if (this.fall) {
       this.straighten();
-      this.toppling.start(this.bench.robot, this.finding!).catch((error: unknown) => {
+      await this.toppling.start(this.bench.robot, this.finding!).catch((error: unknown) => {
         tell(reasonOf(error), true);
       });
     }
@@ -364,7 +368,7 @@ export class App {
 
   toggleTopple(): void {
     if (!this.stopTopple()) {
-      this.startTopple();
+      void this.startTopple();
     }
   }
 
@@ -419,7 +423,7 @@ export class App {
     const answer = this.finding?.answer;
     this.wasUnstable = answer?.verdict === 'unstable';
     if (this.fall === 'topples' && !wasUnstable && !matchMedia('(prefers-reduced-motion: reduce)').matches) {
-      this.startTopple();
+      void this.startTopple();
     }
   }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { App } from './app';
 import { byId, reportLines } from './dom';
+import type { Film } from './film';
 import { t } from '../texts';
 
 /** What the user touches of a fall: a robot that topples, or breaks and its pieces fall. */
@@ -14,8 +15,17 @@ export class BreakingPanel {
       toppling.isSlow = !toppling.isSlow;
       byId('fall-slowly').setAttribute('aria-pressed', String(toppling.isSlow));
     };
+    app.films.push(() => (app.fall ? this.film() : undefined));
     app.shownListeners.push(() => this.show());
     app.fallListeners.push(() => this.show());
+  }
+
+  private async *film(): Film {
+    const { app } = this;
+    if (!app.isToppled) {
+      await app.startTopple();
+    }
+    yield* app.toppling.moments();
   }
 
   private show(): void {

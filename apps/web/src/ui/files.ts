@@ -9,6 +9,10 @@ import { withoutHead, type Surroundings } from '../model/surroundings';
 import type { Workbench } from '../model/workbench';
 import type { App } from './app';
 import { byId, download, reasonOf, tell } from './dom';
+import { ROLE_NAMES, cellText } from '../model/cell';
+import { OBSTACLE } from '../view/colours';
+import { glbOf } from '../view/solid';
+import { gifOf } from './film';
 import { makePoster } from './poster';
 import { t } from '../texts';
 
@@ -134,6 +138,10 @@ export async function take(app: App, what: string): Promise<void> {
         return await save(Output.kSvg, 'svg', 'image/svg+xml');
       case 'png':
         return await savePng(app);
+      case 'glb':
+        return download(`${fileName(bench)}.glb`, await solidOf(app));
+      case 'gif':
+        return download(`${fileName(bench)}.gif`, await gifOf(app));
       case 'link':
         return await copyLink(bench);
       default:
@@ -142,6 +150,13 @@ export async function take(app: App, what: string): Promise<void> {
   } catch (error) {
     tell(reasonOf(error), true);
   }
+}
+
+/** What is in the picture, where it stands. */
+function solidOf({ robot, view, obstacles }: App): Promise<Blob> {
+  const modules = view.solids().map(({ slot, place, colour }) => ({ name: `${ROLE_NAMES[robot.roleAt(slot)]} ${cellText(robot.cellAt(slot))}`, place, colour }));
+  const blocks = obstacles.faces.visible ? obstacles.faces.geometry : undefined;
+  return glbOf(robot.name, robot.lattice, robot.pitchMm, modules, blocks, OBSTACLE.contact);
 }
 
 async function savePng(app: App): Promise<void> {

@@ -3,6 +3,7 @@
 import { LOAD_STEPS, css, loadColour, stepColours, type Rgb } from '../view/colours';
 import type { App } from './app';
 import { byId } from './dom';
+import { inLight } from './theme';
 import { digits, t } from '../texts';
 
 /** The picture as one takes it away: on a ground, with its name, the verdict and what the colours mean. */
@@ -11,8 +12,8 @@ import { digits, t } from '../texts';
 const SCALE = 2;
 const MARGIN = 18;
 
-export function makePoster(app: App): Promise<Blob | null> {
-  const { canvas, ratio } = app.stage.picture(SCALE);
+export function drawPoster(app: App, scaleOf: (ratio: number, width: number) => number = () => SCALE): HTMLCanvasElement {
+  const { canvas, ratio } = app.stage.picture(scaleOf);
   const poster = document.createElement('canvas');
   [poster.width, poster.height] = [canvas.width, canvas.height];
   const context = poster.getContext('2d')!;
@@ -37,7 +38,15 @@ export function makePoster(app: App): Promise<Blob | null> {
   if (!app.view.losses && !app.view.hasOwnColours) {
     drawLegend(context, app, poster.height / ratio - MARGIN - 54, quiet);
   }
-  return new Promise((done) => poster.toBlob(done));
+  return poster;
+}
+
+export const makePoster = (app: App): Promise<Blob | null> => new Promise((done) => drawPoster(app).toBlob(done));
+
+/** What is printed is the poster, in light, as a canvas of WebGL may be empty there. */
+export function printPoster(app: App): void {
+  window.addEventListener('beforeprint', () => inLight(() => byId('printed').replaceChildren(drawPoster(app))));
+  window.addEventListener('afterprint', () => byId('printed').replaceChildren());
 }
 
 const STEP_WIDTH = 46;

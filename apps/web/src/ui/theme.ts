@@ -15,14 +15,14 @@ let theme: (typeof THEMES)[number] = recall('theme', THEMES);
 export const isDark = () => (theme === 'system' ? DARK.matches : theme === 'dark');
 
 /** Rules for the dark that hold always, never, or by the system. */
-const MEDIA = { system: DARK.media, light: 'not all', dark: 'all' };
+const MEDIA = { system: `screen and ${DARK.media}`, light: 'not all', dark: 'screen' };
 
 let darkRules: CSSMediaRule[] | undefined;
 
 function applyTheme(): void {
   darkRules ??= [...document.styleSheets]
     .flatMap((sheet) => [...sheet.cssRules])
-    .filter((rule) => rule instanceof CSSMediaRule && rule.media.mediaText === DARK.media) as CSSMediaRule[];
+    .filter((rule) => rule instanceof CSSMediaRule && rule.media.mediaText === MEDIA.system) as CSSMediaRule[];
   darkRules.forEach((rule) => (rule.media.mediaText = MEDIA[theme]));
   document.documentElement.style.colorScheme = theme === 'system' ? '' : theme;
 }
@@ -39,6 +39,19 @@ export function chooseTheme(select: HTMLSelectElement): void {
 }
 
 const followers: (() => void)[] = [];
+
+/** Draws something in light, whatever the theme is. */
+export function inLight(draw: () => void): void {
+  const chosen = theme;
+  const put = (one: typeof theme) => {
+    theme = one;
+    applyTheme();
+    followers.forEach((follow) => follow());
+  };
+  put('light');
+  draw();
+  put(chosen);
+}
 
 /** Calls `follow` whenever it becomes light or dark. */
 export function followTheme(follow: () => void): void {

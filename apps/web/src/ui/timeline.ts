@@ -11,6 +11,7 @@ import type { App } from './app';
 import { formatRatio, numberText } from './answer_panel';
 import { drawBands } from './bands';
 import { byId, icon, reasonOf, say, tell, type IconName } from './dom';
+import type { Film } from './film';
 import { openText, take } from './files';
 import { findingOf } from './stage_finding';
 import { followTheme } from './theme';
@@ -23,6 +24,9 @@ const STAGE_MS = 550;
 const WHOLE_MS = 60_000;
 /** A changed robot is judged anew when nothing has changed for so long. */
 const DELAY_MS = 300;
+
+/** A film has so many at most. */
+const FILM_STAGES = 240;
 
 /** The loads of so many stages are kept. */
 const STAGES_KNOWN = 8;
@@ -68,6 +72,7 @@ export class Timeline {
       this.show(Number((event.target as HTMLInputElement).value));
     };
     byId('bands').onclick = (event) => this.pointAt(event);
+    app.films.push(() => (this.sequence && (app.mode === 'stage' || !app.fall) ? this.film() : undefined));
     followTheme(() => this.drawBands());
     byId('scale').addEventListener('change', () => this.drawBands());
   }
@@ -270,6 +275,20 @@ export class Timeline {
     }
     if (this.isPlaying && at + 1 < this.stageCount) {
       void this.findLoads(at + 1);
+    }
+  }
+
+  /** Stage by stage, with its loads; of many steps some. */
+  private async *film(): Film {
+    const { judged, stageCount } = this;
+    this.pause();
+    for (let i = 0; i < Math.min(stageCount, FILM_STAGES) && judged === this.judged; ++i) {
+      const at = stageCount <= FILM_STAGES ? i : Math.round((i * (stageCount - 1)) / (FILM_STAGES - 1));
+      this.show(at);
+      if (!this.known.has(at)) {
+        await this.findLoads(at);
+      }
+      yield at === stageCount - 1 ? 3 * STAGE_MS : STAGE_MS;
     }
   }
 

@@ -7,7 +7,7 @@ import { mergeGeometries } from 'three/examples/jsm/utils/BufferGeometryUtils.js
 import { LOAD_FIELDS, MOTION_FIELDS, type Answer } from '../core/types';
 import { Role, type Cell } from '../model/cell';
 import type { EditedRobot } from '../model/edited_robot';
-import { CUBIC, type Lattice } from '../model/lattice';
+import { CUBIC, type Lattice, type Place } from '../model/lattice';
 import {
   FIXED, NEUTRAL, UNKNOWN, UNSTABLE, brokenColour, loadColour, loadStep, mix, stepColours, type Rgb, type ScaleName, type Subject,
 } from './colours';
@@ -421,7 +421,7 @@ export class RobotView {
     }
   }
 
-  private colour(role: Role, ratio: number | undefined, isBroken: boolean, isUnstable: boolean): Rgb {
+  private colour(role: Role, ratio: number | undefined, isBroken: boolean, isUnstable: boolean, subject = this.subject): Rgb {
     if (isUnstable) {
       return UNSTABLE;
     }
@@ -431,10 +431,21 @@ export class RobotView {
     if (ratio === undefined || Number.isNaN(ratio)) {
       return UNKNOWN;
     }
-    if (this.subject === 'connections') {
+    if (subject === 'connections') {
       return NEUTRAL;
     }
     return isBroken ? brokenColour(this.scale) : loadColour(this.scale, ratio);
+  }
+
+  /** What of the robot is seen, each module in the colour of its largest load. */
+  solids(): { slot: number; place: Place; colour: Rgb }[] {
+    const { robot, loads, judged } = this;
+    const isUnstable = judged?.answer.verdict === 'unstable';
+    return Array.from(robot ? this.drawn : [], (slot) => {
+      const isBroken = !isUnstable && loads?.isBroken[slot] === 1;
+      const colour = this.ownColour(slot) ?? this.colour(robot!.roleAt(slot), loads?.ratio[slot], isBroken, isUnstable, 'modules');
+      return { slot, place: robot!.placeAt(slot), colour };
+    });
   }
 
   /** Velocities of a collapse in place of displacements, six for each slot, and modules that give way. */

@@ -99,10 +99,11 @@ export class Stage {
     this.renderer.render(this.scene, this.eye());
   }
 
-  /** The picture with so many pixels for each that it has now, until it is drawn again. */
-  picture(scale: number): { canvas: HTMLCanvasElement; ratio: number } {
+  /** The picture with so many pixels for each that it has now, by its pixel ratio and width. */
+  picture(scaleOf: (ratio: number, width: number) => number): { canvas: HTMLCanvasElement; ratio: number } {
     const ratio = this.renderer.getPixelRatio();
     const { clientWidth, clientHeight } = this.canvas;
+    const scale = scaleOf(ratio, clientWidth);
     const copy = document.createElement('canvas');
     this.renderer.setPixelRatio(ratio * scale);
     this.renderer.setSize(clientWidth, clientHeight, false);
