@@ -134,7 +134,7 @@ test('ribbons are seen, by keys too, and nothing is left of them where loads are
     await page.selectOption('#theme', theme);
     const [ink, arrows] = await page.evaluate(() => {
       const { app, flow } = globalThis.holdfast;
-      return [app.ground.colours.mass, flow.arrows.mesh.material.color.getHex()];
+      return [app.scenery.ground.colours.mass, flow.arrows.mesh.material.color.getHex()];
     });
     assert.equal(arrows, ink);
   }

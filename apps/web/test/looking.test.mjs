@@ -242,7 +242,7 @@ test('orthographic: where a pixel is drawn is where it is pointed at, in every l
 test('a theme that was chosen holds against the system’s, in the picture too, and is remembered', async () => {
   const page = await openPage(browser, { viewport: { width: 1200, height: 800 }, colorScheme: 'light' });
   const paper = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
-  const ink = () => page.evaluate(() => globalThis.holdfast.app.ground.colours.mass);
+  const ink = () => page.evaluate(() => globalThis.holdfast.app.scenery.ground.colours.mass);
   const light = [await paper(), await ink()];
   await page.selectOption('#theme', 'dark');
   const dark = [await paper(), await ink()];

@@ -153,7 +153,7 @@ export async function take(app: App, what: string): Promise<void> {
 }
 
 /** What is in the picture, where it stands. */
-function solidOf({ robot, view, obstacles }: App): Promise<Blob> {
+function solidOf({ robot, view, scenery: { obstacles } }: App): Promise<Blob> {
   const modules = view.solids().map(({ slot, place, colour }) => ({ name: `${ROLE_NAMES[robot.roleAt(slot)]} ${cellText(robot.cellAt(slot))}`, place, colour }));
   const blocks = obstacles.faces.visible ? obstacles.faces.geometry : undefined;
   return glbOf(robot.name, robot.lattice, robot.pitchMm, modules, blocks, OBSTACLE.contact);

@@ -35,7 +35,7 @@ export class FlowPanel {
     app.stage.scene.add(this.arrows.mesh);
     app.addInked(this.arrows);
     app.shownListeners.push(() => this.show());
-    app.pinListeners.push(() => this.show());
+    app.pointed.pinListeners.push(() => this.show());
     app.stage.followers.push(() => this.placeLabels());
   }
 
@@ -72,7 +72,8 @@ export class FlowPanel {
   }
 
   private find(finding: Finding): Way | undefined {
-    const { robot, picked, view } = this.app;
+    const { robot, pointed, view } = this.app;
+    const picked = pointed.isPinned ? pointed.cell : undefined;
     const answer = finding.answer!;
     const { slots } = finding;
     const held = new Set<number>();
