@@ -3,7 +3,7 @@
 import { createHash } from 'node:crypto';
 import { readFileSync, readdirSync } from 'node:fs';
 import { deflateRawSync } from 'node:zlib';
-import { defineConfig, type Plugin } from 'vite';
+import { defineConfig, transformWithEsbuild, type HtmlTagDescriptor, type Plugin } from 'vite';
 import { toLetters } from './src/core/letters';
 import { Core } from './src/core/wasm';
 
@@ -11,13 +11,18 @@ const repository = new URL('../../', import.meta.url);
 const coreFile = new URL('build/wasm/holdfast_core.wasm', repository);
 const scenarioFolder = new URL('scenarios/', repository);
 
+/** Bytes in the page, deflated, as letters (src/core/letters.ts); src/core/packed.ts reads them. */
+function element(id: string, bytes: Uint8Array): HtmlTagDescriptor {
+  const packed = deflateRawSync(bytes, { level: 9 });
+  return { tag: 'script', attrs: { id, type: 'text/plain', 'data-size': String(packed.length) }, children: toLetters(packed), injectTo: 'body' };
+}
+
+const markup = ({ tag, attrs, children }: HtmlTagDescriptor) =>
+  `<${tag} ${Object.entries(attrs!).map(([name, value]) => `${name}="${value}"`).join(' ')}>${children as string}</${tag}>`;
+
 /** Modules that are made from files of the repository, and of what the core says. */
 function holdfastFiles(): Plugin {
   const makers: Record<string, () => unknown> = {
-    'virtual:core': () => {
-      const packed = deflateRawSync(readFileSync(coreFile), { level: 9 });
-      return { letters: toLetters(packed), size: packed.length };
-    },
     'virtual:vocabulary': async () =>
       (await Core.create(await WebAssembly.compile(readFileSync(coreFile)))).vocabulary(),
     'virtual:scenarios': () =>
@@ -33,6 +38,7 @@ function holdfastFiles(): Plugin {
   return {
     name: 'holdfast-files',
     resolveId: (id) => (id in makers ? `\0${id}` : undefined),
+    transformIndexHtml: () => [element('holdfast-core', readFileSync(coreFile))],
     load: async (id) =>
       id.startsWith('\0virtual:') && id.slice(1) in makers
         ? `export default ${JSON.stringify(await makers[id.slice(1)]())};`
@@ -42,12 +48,21 @@ function holdfastFiles(): Plugin {
 
 const sha256 = (text: string) => `'sha256-${createHash('sha256').update(text).digest('base64')}'`;
 
+/** The one script that the browser sees at first: it unpacks the page's own, whose hash the policy has too. */
+async function openerScript(): Promise<string> {
+  const source = readFileSync(new URL('src/opener.ts', import.meta.url), 'utf8');
+  const packed = readFileSync(new URL('src/core/packed.ts', import.meta.url), 'utf8');
+  const letters = readFileSync(new URL('src/core/letters.ts', import.meta.url), 'utf8');
+  const whole = [letters, packed, source].join('\n').replace(/^import .*$/gm, '').replace(/^export /gm, '');
+  return (await transformWithEsbuild(whole, 'opener.ts', { minify: true, format: 'esm', treeShaking: true })).code.trim();
+}
+
 /** One HTML file with script and style in it, and a policy that allows exactly these. */
 function oneFile(): Plugin {
   return {
     name: 'holdfast-one-file',
     enforce: 'post',
-    generateBundle(_options, bundle) {
+    async generateBundle(_options, bundle) {
       let script = '';
       let style = '';
       for (const [name, file] of Object.entries(bundle)) {
@@ -64,9 +79,10 @@ function oneFile(): Plugin {
       if (page?.type !== 'asset') {
         throw new Error('no index.html was made');
       }
+      const opener = await openerScript();
       const policy = [
         "default-src 'none'",
-        `script-src ${sha256(script)} 'wasm-unsafe-eval'`,
+        `script-src ${sha256(opener)} ${sha256(script)} 'wasm-unsafe-eval'`,
         `style-src ${sha256(style)}`,
         'worker-src blob:',
         'img-src blob: data:',
@@ -79,7 +95,7 @@ function oneFile(): Plugin {
         .replace(/<link rel="stylesheet"[^>]*>\s*/, '')
         .replace('<meta charset="utf-8">', () => `<meta charset="utf-8">\n${head}`)
         .replace('</head>', () => `<style>${style}</style>\n</head>`)
-        .replace('</body>', () => `<script type="module">${script}</script>\n</body>`);
+        .replace('</body>', () => `${markup(element('holdfast-script', Buffer.from(script)))}\n<script type="module">${opener}</script>\n</body>`);
       page.fileName = 'holdfast.html';
     },
   };

@@ -8,32 +8,36 @@ import { Workbench, type Tool } from './model/workbench';
 import type { ScaleName, Subject } from './view/colours';
 import { App } from './ui/app';
 import { showFaceLegend, showLegend } from './ui/answer_panel';
-import { byId, icon, make, say, tell } from './ui/dom';
+import { byId, icon, make, reasonOf, say, tell } from './ui/dom';
 import { listenToFiles, reportOf, take, write } from './ui/files';
 import { BreakingPanel } from './ui/breaking';
 import { ChallengePanel } from './ui/challenges';
 import { Collapse } from './ui/collapse';
 import { ConnectionTable } from './ui/connections';
 import { DeformedPanel } from './ui/deformed';
+import { FlowPanel } from './ui/flow';
 import { openGallery } from './ui/gallery';
 import { Keeper } from './ui/keeper';
 import { KEYS, listenToKeys } from './ui/keyboard';
+import { offerLanguages } from './ui/language';
 import { makeLooking } from './ui/looking';
 import { makeMaterial } from './ui/material';
 import { Player } from './ui/player';
+import { printPoster } from './ui/poster';
 import { listenToPointer } from './ui/pointer';
 import { openFirst, showWithoutPicture } from './ui/start';
 import { makeSurroundings } from './ui/surroundings';
 import { Timeline } from './ui/timeline';
 import { LossPanel, Sure } from './ui/what_if';
 import { WhyPanel } from './ui/why';
+import { digits, t, translatePage, word, type Text } from './texts';
 
 declare global {
   /** A handle for the browser's console, and for the tests. */
-  var holdfast: { bench: Workbench; app: App; player: Player; timeline: Timeline; reportOf: typeof reportOf; write: typeof write };
+  var holdfast: { bench: Workbench; app: App; flow: FlowPanel; player: Player; timeline: Timeline; reportOf: typeof reportOf; write: typeof write };
 }
 
-const TOOLS: readonly [tool: Tool, text: string, key: string][] = [
+const TOOLS: readonly [tool: Tool, text: Text, key: string][] = [
   ['look', 'Look', 'V'],
   ['add', 'Attach', 'A'],
   ['remove', 'Remove', 'D'],
@@ -67,21 +71,21 @@ function moveInside(group: HTMLElement): void {
 
 function makeTools(bench: Workbench): void {
   const tools = TOOLS.map(([tool, text, key]) => {
-    const button = radio('', `${text} (${key})`, () => bench.setTool(tool));
+    const button = radio('', `${t(text)} (${key})`, () => bench.setTool(tool));
     // There is room for four names only.
-    button.append(icon(tool), ...(tool === 'obstacle' || tool === 'load' ? [] : [make('span', {}, text)]));
-    button.setAttribute('aria-label', text);
+    button.append(icon(tool), ...(tool === 'obstacle' || tool === 'load' ? [] : [make('span', {}, t(text))]));
+    button.setAttribute('aria-label', t(text));
     return button;
   });
   const roles = ROLE_NAMES.map((name, role) => {
-    const text = `${name[0].toUpperCase()}${name.slice(1)}`;
+    const text = word(`${name[0].toUpperCase()}${name.slice(1)}`);
     const button = radio('', `${text} (${role + 1})`, () => bench.setRole(role as Role));
     button.append(make('span', { className: `swatch ${name}` }), make('span', {}, text));
     return button;
   });
   byId('tools').append(...tools);
   const holds = HOLDS.map((hold, i) => {
-    const text = `${hold[0].toUpperCase()}${hold.slice(1)}`;
+    const text = word(`${hold[0].toUpperCase()}${hold.slice(1)}`);
     const button = radio('', `${text} (${i + 1})`, () => bench.setHold(hold));
     button.append(make('span', { className: `swatch obstacle ${hold}` }), make('span', {}, text));
     return button;
@@ -100,7 +104,7 @@ function makeTools(bench: Workbench): void {
     const offered = bench.tool === 'obstacle' ? holds : roles;
     if (offered[0].parentElement !== byId('roles')) {
       byId('roles').replaceChildren(...offered);
-      byId('roles').ariaLabel = bench.tool === 'obstacle' ? 'How an obstacle holds' : 'What is attached or painted';
+      byId('roles').ariaLabel = bench.tool === 'obstacle' ? t('How an obstacle holds') : t('What is attached or painted');
     }
     byId('roles').classList.toggle('idle', !['add', 'paint', 'obstacle'].includes(bench.tool));
     byId<HTMLButtonElement>('undo').disabled = !bench.history.canUndo;
@@ -122,13 +126,12 @@ function makeDialogs(): void {
       }
     });
   }
-  const rows = KEYS.map(([keys, text]) => make('tr', {}, make('th', { scope: 'row' }, keys), make('td', {}, text)));
+  const rows = KEYS.map(([keys, text]) => make('tr', {}, make('th', { scope: 'row' }, word(keys)), make('td', {}, t(text))));
   byId('keys-list').append(
     make(
       'p',
       {},
-      'Click a face to attach a module, drag from a face to draw a row, drag elsewhere to turn the view. ' +
-        'With a finger: tap, long press and drag, drag. The colour of the ghost is the answer before you click.',
+      t('Click a face to attach a module, drag from a face to draw a row, drag elsewhere to turn the view. With a finger: tap, long press and drag, drag. The colour of the ghost is the answer before you click.'),
     ),
     make('table', { className: 'keys' }, make('tbody', {}, ...rows)),
   );
@@ -143,7 +146,7 @@ function makePanel(app: App, keeper: Keeper): void {
   const slider = byId<HTMLInputElement>('exaggeration');
   slider.oninput = () => {
     const factor = app.setExaggeration(Number(slider.value) / 100);
-    byId('exaggeration-value').textContent = `${factor === 0 || factor >= 10 ? factor.toFixed(0) : factor.toFixed(1)} ×`;
+    byId('exaggeration-value').textContent = `${digits(factor === 0 || factor >= 10 ? factor.toFixed(0) : factor.toFixed(1))} ×`;
   };
   byId('stop').onclick = () => app.stop();
   const faces = byId('faces');
@@ -186,11 +189,10 @@ function makeActions(app: App, player: Player, timeline: Timeline): Record<strin
     camera.position.sub(controls.target).multiplyScalar(factor).add(controls.target);
     controls.update();
   };
-  const tellDone = (label: string | undefined, word: string) =>
-    say(label ? `${word}: ${label}` : 'nothing to undo');
+  const tellDone = (label: string | undefined, text: Text) => say(label ? t(text, label) : t('nothing to undo'));
   return {
-    undo: () => tellDone(bench.history.undo(), 'undone'),
-    redo: () => tellDone(bench.history.redo(), 'done again'),
+    undo: () => tellDone(bench.history.undo(), 'undone: {0}'),
+    redo: () => tellDone(bench.history.redo(), 'done again: {0}'),
     f: () => bench.refusesNow() || byId('faces').click(),
     h: () => app.see(),
     w: () => app.seeWorst(),
@@ -215,7 +217,7 @@ function begin(): void {
   const app = new App(bench);
   const player = new Player(app);
   const timeline = new Timeline(app);
-  globalThis.holdfast = { bench, app, player, timeline, reportOf, write };
+  globalThis.holdfast = { bench, app, flow: new FlowPanel(app), player, timeline, reportOf, write };
   const keeper = new Keeper(bench);
   makeTools(bench);
   makeDialogs();
@@ -226,10 +228,13 @@ function begin(): void {
   new LossPanel(app);
   new DeformedPanel(app);
   new BreakingPanel(app);
-  const actions = { ...makeActions(app, player, timeline), ...makeLooking(app) };
+  const looking = makeLooking(app);
+  const actions: Record<string, () => void> = { ...makeActions(app, player, timeline), ...looking, n: () => globalThis.holdfast.flow.next() };
   listenToPointer(app);
   listenToKeys(app, actions);
   listenToFiles(bench);
+  offerLanguages(bench);
+  printPoster(app);
   bench.robotListeners.push(() => (byId('hint').hidden ||= bench.history.canUndo));
   for (const [id, name] of [['undo', 'undo'], ['redo', 'redo'], ['fit', 'fit']] as const) {
     byId(id).append(icon(name));
@@ -241,7 +246,7 @@ function begin(): void {
   byId('help').onclick = actions['?'];
   const challenges = new ChallengePanel(app);
   byId('gallery-open').onclick = () => openGallery(bench, keeper, (challenge) => void challenges.begin(challenge));
-  byId('new').onclick = () => bench.history.replace('beginning anew', new EditedRobot(bench.robot.lattice));
+  byId('new').onclick = () => bench.history.replace(t('beginning anew'), new EditedRobot(bench.robot.lattice));
   byId('save').onclick = () => byId<HTMLDialogElement>('takeaway').showModal();
   for (const button of document.querySelectorAll<HTMLButtonElement>('[data-save]')) {
     button.onclick = () => {
@@ -252,6 +257,8 @@ function begin(): void {
   void openFirst(app, keeper, new Collapse(app)).then(showReady);
 }
 
+translatePage(document.documentElement);
+
 const showReady = () => document.documentElement.classList.add('ready');
 
 // First the page is painted, then the canvas made, which takes longer; the core compiles meanwhile.
@@ -260,7 +267,7 @@ requestAnimationFrame(() =>
     try {
       begin();
     } catch (error) {
-      const reason = error instanceof Error ? error.message : String(error);
+      const reason = reasonOf(error);
       void showWithoutPicture(reason).then(showReady);
     }
   }),

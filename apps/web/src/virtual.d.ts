@@ -2,12 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /** Made by vite.config.ts. */
-declare module 'virtual:core' {
-  /** The core's .wasm file, deflated, as letters (core/letters.ts), and how many bytes these are. */
-  const core: { letters: string; size: number };
-  export default core;
-}
-
 declare module 'virtual:scenarios' {
   /** The files of scenarios/, by name. */
   const scenarios: Record<string, object>;

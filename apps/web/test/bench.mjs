@@ -3,7 +3,7 @@
 //
 // What the page weighs and how fast it is, on this machine: ./dev bench page
 import { readFileSync, statSync } from 'node:fs';
-import { deflateRawSync } from 'node:zlib';
+import { gzipSync } from 'node:zlib';
 import path from 'node:path';
 import { launch, openPage, pageFile, pointerMoves, repository } from './browser.mjs';
 
@@ -15,12 +15,17 @@ const ms = (values) => {
 const line = (name, text) => console.log(`${name.padEnd(44)} ${text}`);
 
 const core = path.join(repository, 'build/wasm/holdfast_core.wasm');
-const packed = Math.ceil((deflateRawSync(readFileSync(core), { level: 9 }).length * 4) / 3);
-const whole = statSync(pageFile).size;
-line('the page, one file', kilobytes(whole));
-line('  its parts unpacked: core', kilobytes(statSync(core).size));
-line('  script, style and markup', kilobytes(whole - packed));
-line('  all in', kilobytes(whole - packed + statSync(core).size));
+const html = readFileSync(pageFile);
+line('the page, one file', kilobytes(html.length));
+line('  as a server sends it, gzip -9', kilobytes(gzipSync(html, { level: 9 }).length));
+let rest = html.length;
+for (const [name, file] of [['core', 'holdfast-core'], ['script', 'holdfast-script']]) {
+  const [, letters] = new RegExp(`id="${file}"[^>]*>([^<]*)`).exec(html.toString('latin1'));
+  rest -= letters.length;
+  line(`  its ${name}, packed`, kilobytes(letters.length));
+}
+line('  style and markup', kilobytes(rest));
+line('  the core unpacked', kilobytes(statSync(core).size));
 
 const browser = await launch();
 let begun = performance.now();

@@ -181,7 +181,7 @@ export const pointerMoves = (page) =>
       const begun = performance.now();
       stage.canvas.dispatchEvent(new PointerEvent('pointermove', { clientX, clientY, pointerType: 'mouse' }));
       found.push({ ms: performance.now() - begun, calls });
-      cells.add(String(app.pointedCell));
+      cells.add(String(app.pointed.cell));
     }
     return { found, cells: cells.size };
   });

@@ -47,7 +47,7 @@ test('it shows the first robot and its verdict, with a picture', async () => {
   assert.equal(await verdict(), 'overload');
   assert.match(await page.$eval('#chip-numbers', (numbers) => numbers.textContent), /load 1\.20/);
   const colours = await page.evaluate(() => {
-    const { canvas } = globalThis.holdfast.app.stage.picture(1);
+    const { canvas } = globalThis.holdfast.app.stage.picture(() => 1);
     const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
     const seen = new Set();
     for (let i = 0; i < data.length; i += 4) {

@@ -154,7 +154,7 @@ test('the pointer meets what a ray meets first, in every lattice', async () => {
         const x = box.left + box.width * (0.2 + (0.6 * ((i * 17) % 40)) / 40);
         const y = box.top + box.height * (0.2 + (0.5 * i) / 40);
         canvas.dispatchEvent(new PointerEvent('pointermove', { clientX: x, clientY: y, pointerType: 'mouse' }));
-        all.push([app.pointedCell ? String(app.pointedCell) : '', first(app.stage.ray(x, y))]);
+        all.push([app.pointed.cell ? String(app.pointed.cell) : '', first(app.stage.ray(x, y))]);
       }
       return { all: all.length, met: all.filter(([, b]) => b).length, wrong: all.filter(([a, b]) => a !== b) };
     });
@@ -536,7 +536,7 @@ test('facets show what they do, each for itself', async () => {
   // Those below push up, the one above pushes down.
   const pushes = states.reduce((sum, { push, module }) => sum + (module === 1 ? -push : push), 0);
   assert.ok(Math.abs(pushes - 4 * WEIGHT) < 1e-6, `together they carry the weight: ${pushes}`);
-  assert.ok(await page.evaluate(() => globalThis.holdfast.app.facets.mesh.visible));
+  assert.ok(await page.evaluate(() => globalThis.holdfast.app.scenery.facets.mesh.visible));
   await page.evaluate(() => globalThis.holdfast.app.point([0, 0, 0]));
   assert.match(await page.textContent('#details'), /facet −z (presses|tilts), pressed with 1\.2/);
   assert.deepEqual(page.faults, []);

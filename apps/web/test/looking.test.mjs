@@ -157,3 +157,110 @@ test('before an audience there is the picture alone, with large words, and a way
   assert.equal(await page.getAttribute('#present', 'aria-pressed'), 'false');
   assert.equal(await width(), before);
 });
+
+/** Width in the picture of an edge of length one, at a cell. */
+const edgeAt = (page, cell) =>
+  page.evaluate((at) => {
+    const { stage } = globalThis.holdfast.app;
+    const point = (x) => stage.project(stage.controls.target.clone().fromArray([at[0] + x, at[1], at[2]]));
+    return point(0.5).x - point(-0.5).x;
+  }, cell);
+
+test('orthographic: equal lengths are equal, and cuts and pointing are right in it, from every side', async () => {
+  const page = await openCube(5);
+  await page.keyboard.press('7');
+  assert.ok((await edgeAt(page, [2, 0, 2])) > 1.05 * (await edgeAt(page, [2, 4, 2])), 'nearer is larger in perspective');
+  const middle = await edgeAt(page, [2, 2, 2]);
+  await page.keyboard.press('5');
+  assert.equal(await page.getAttribute('#parallel', 'aria-pressed'), 'true');
+  for (const y of [0, 2, 4]) {
+    assert.ok(Math.abs((await edgeAt(page, [2, y, 2])) - middle) < 1e-6 * middle, `the same at ${y} as in the middle before`);
+  }
+  for (const [key, side, at, cell] of [['9', 'above', 2, '(2,2,2)'], ['7', 'front', 1, '(2,1,2)'], ['8', 'right', 3, '(3,2,2)']]) {
+    await page.keyboard.press(key);
+    await cut(page, side, at);
+    assert.ok((await pointed(page)).startsWith(cell), `${side} ${at}: ${await page.innerText('#details .cell')}`);
+    assert.ok(await page.evaluate(() => {
+      const { low, high } = globalThis.holdfast.bench.robot.bounds();
+      return globalThis.holdfast.app.stage.holds(low, high);
+    }));
+    await page.selectOption('#cut', '');
+  }
+  // A module far off, and one so near that the other camera is inside of the robot.
+  for (const factor of [12, 0.02]) {
+    await page.keyboard.press('6');
+    await page.evaluate((share) => {
+      const { camera, controls } = globalThis.holdfast.app.stage;
+      camera.position.sub(controls.target).multiplyScalar(share).add(controls.target);
+      controls.update();
+    }, factor);
+    await settled(page);
+    assert.match(await pointed(page), /^\(\d,\d,\d\), existing/);
+  }
+  await page.keyboard.press('7');
+  await page.keyboard.press('5');
+  assert.ok((await edgeAt(page, [2, 0, 2])) > (await edgeAt(page, [2, 4, 2])));
+  assert.deepEqual(page.faults, []);
+});
+
+test('orthographic: where a pixel is drawn is where it is pointed at, in every lattice', async () => {
+  const page = await openCube(3);
+  await page.keyboard.press('5');
+  for (const lattice of ['cubic', 'face-centred', 'hexagonal', 'hexagonal-prism']) {
+    await page.evaluate((name) => globalThis.holdfast.bench.setLattice(name), lattice);
+    await settled(page);
+    await page.keyboard.press('7');
+    await settled(page);
+    // Each module that is pointed at gets a rim of the pointer's colour: some pixels beside it change.
+    const { x, y } = await page.evaluate(() => {
+      const { app, bench } = globalThis.holdfast;
+      const { robot } = bench;
+      const front = Array.from({ length: robot.count }, (_, slot) => robot.placeAt(slot)).sort((a, b) => a[1] - b[1])[0];
+      const at = app.stage.project(app.stage.controls.target.clone().fromArray(front));
+      const box = app.stage.canvas.getBoundingClientRect();
+      return { x: at.x + box.left, y: at.y + box.top };
+    });
+    await page.keyboard.press('v');
+    await page.mouse.move(5, 300);
+    await settled(page);
+    const area = { x: x - 60, y: y - 60, width: 120, height: 120 };
+    const before = await pixels(page, area);
+    await page.mouse.move(x, y);
+    await page.waitForSelector('#details .cell');
+    await page.evaluate(() => (document.getElementById('details').style.visibility = 'hidden'));
+    await settled(page);
+    const after = await pixels(page, area);
+    await page.evaluate(() => (document.getElementById('details').style.visibility = ''));
+    const changed = after.flatMap((rgb, i) => (rgb.some((value, k) => Math.abs(value - before[i][k]) > 8) ? [[i % 120, Math.floor(i / 120)]] : []));
+    assert.ok(changed.length > 100, `${lattice}: ${changed.length} pixels change`);
+    const mean = [0, 1].map((k) => changed.reduce((sum, one) => sum + one[k], 0) / changed.length);
+    mean.forEach((value) => assert.ok(Math.abs(value - 60) < 12, `${lattice}: around ${mean}`));
+  }
+  assert.deepEqual(page.faults, []);
+});
+
+test('a theme that was chosen holds against the system’s, in the picture too, and is remembered', async () => {
+  const page = await openPage(browser, { viewport: { width: 1200, height: 800 }, colorScheme: 'light' });
+  const paper = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+  const ink = () => page.evaluate(() => globalThis.holdfast.app.scenery.ground.colours.mass);
+  const light = [await paper(), await ink()];
+  await page.selectOption('#theme', 'dark');
+  const dark = [await paper(), await ink()];
+  assert.notDeepEqual(dark, light);
+  await page.keyboard.press('5');
+  await page.reload();
+  await page.waitForSelector('html.ready');
+  await settled(page);
+  assert.deepEqual([await paper(), await ink()], dark);
+  assert.equal(await page.inputValue('#theme'), 'dark');
+  assert.equal(await page.evaluate(() => globalThis.holdfast.app.stage.isParallel), true);
+  await page.emulateMedia({ colorScheme: 'dark' });
+  await page.selectOption('#theme', 'light');
+  assert.deepEqual([await paper(), await ink()], light);
+  await page.selectOption('#theme', 'system');
+  assert.deepEqual([await paper(), await ink()], dark, 'the system is dark now');
+  await page.emulateMedia({ colorScheme: 'light' });
+  await settled(page);
+  assert.deepEqual([await paper(), await ink()], light);
+  assert.deepEqual(page.faults, []);
+});

@@ -250,7 +250,7 @@ function visibleFaces() {
       const { x, y } = point(cell.map((value, k) => value + side[k] / 2));
       const at = { clientX: x + box.left, clientY: y + box.top, pointerType: 'mouse' };
       stage.canvas.dispatchEvent(new PointerEvent('pointermove', at));
-      const isSeen = verdict && String(app.pointedCell) === String(cell) && String(whereNext.previewed[0]) === String(place);
+      const isSeen = verdict && String(app.pointed.cell) === String(cell) && String(whereNext.previewed[0]) === String(place);
       // Faces to the front or the right, on which no label stands.
       if (isSeen && side[2] === 0) {
         best[verdict] ??= { cell, side };

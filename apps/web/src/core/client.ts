@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-import CORE from 'virtual:core';
 import type { Role } from '../model/cell';
 import type { RobotData } from '../model/edited_robot';
 import {
@@ -21,7 +20,7 @@ import {
   type Trial,
   type Why,
 } from './types';
-import { fromLetters } from './letters';
+import { unpacked } from './packed';
 import type { WorkerCall, WorkerReply } from './worker';
 import CoreWorker from './worker?worker&inline';
 
@@ -30,9 +29,7 @@ export class Cancelled extends Error {}
 
 /** The core travels in the page as letters for deflated bytes; it is compiled once for all workers. */
 async function compileCore(): Promise<WebAssembly.Module> {
-  const packed = fromLetters(CORE.letters, CORE.size);
-  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate-raw'));
-  return WebAssembly.compile(await new Response(stream).arrayBuffer());
+  return WebAssembly.compile(await unpacked('holdfast-core').arrayBuffer());
 }
 
 export const compiledCore = compileCore();

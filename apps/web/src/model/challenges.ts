@@ -4,6 +4,7 @@ import type { Answer } from '../core/types';
 import { Role, type Cell } from './cell';
 import type { EditedRobot } from './edited_robot';
 import { textOf } from './surroundings';
+import { t } from '../texts';
 
 /** Puzzles: a robot to begin with, and what has to be true of it in the end. The core judges. */
 
@@ -127,13 +128,13 @@ export class Attempt {
     const reached = reach.filter((cell) => robot.has(cell)).length;
     const isWhole = budget === undefined || this.cells.every((cell) => robot.has(cell));
     return [
-      ...(reach.length > 0 ? [{ text: reach.length === 1 ? 'the marked cell is reached' : `${reached} of ${reach.length} marked cells are reached`, isMet: reached === reach.length }] : []),
-      ...(budget === undefined ? [] : [{ text: `${Math.max(more, 0)} of at most ${budget} modules attached, none taken away`, isMet: more <= budget && isWhole }]),
-      ...(most === undefined ? [] : [{ text: `${robot.count} of at most ${most} modules`, isMet: robot.count <= most }]),
-      { text: 'it holds', isMet: isSafe },
-      ...(ratio === undefined ? [] : [{ text: `loaded to ${Math.round(100 * ratio)} % at most`, isMet: isSafe && (answer.load_ratio_max ?? 0) <= ratio }]),
-      ...(isAlwaysSafe ? [{ text: 'it held on the way', isMet: !this.wasUnsafe }] : []),
-      ...(settingsOf(robot) === this.settings ? [] : [{ text: 'material, ground and loads are as they were, and no new module is fixed or planned', isMet: false }]),
+      ...(reach.length > 0 ? [{ text: reach.length === 1 ? t('the marked cell is reached') : t('{0} of {1} marked cells are reached', reached, reach.length), isMet: reached === reach.length }] : []),
+      ...(budget === undefined ? [] : [{ text: t('{0} of at most {1} modules attached, none taken away', Math.max(more, 0), budget), isMet: more <= budget && isWhole }]),
+      ...(most === undefined ? [] : [{ text: t('{0} of at most {1} modules', robot.count, most), isMet: robot.count <= most }]),
+      { text: t('it holds'), isMet: isSafe },
+      ...(ratio === undefined ? [] : [{ text: t('loaded to {0} % at most', Math.round(100 * ratio)), isMet: isSafe && (answer.load_ratio_max ?? 0) <= ratio }]),
+      ...(isAlwaysSafe ? [{ text: t('it held on the way'), isMet: !this.wasUnsafe }] : []),
+      ...(settingsOf(robot) === this.settings ? [] : [{ text: t('material, ground and loads are as they were, and no new module is fixed or planned'), isMet: false }]),
     ];
   }
 }

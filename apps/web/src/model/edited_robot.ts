@@ -7,6 +7,7 @@ import {
   NO_SURROUNDINGS, ObstacleIndex, isStraightDown, ownLoads, textOf, withoutModules, type OwnLoads,
   type Surroundings, type Vector,
 } from './surroundings';
+import { t } from '../texts';
 
 /** Cells are counted from a robot's first one and stay within this distance of it. */
 const REACH = 100_000;
@@ -201,7 +202,7 @@ export class EditedRobot {
     this.origin ??= this.lattice.axial(cell);
     const key = this.key(cell);
     if (key === undefined) {
-      throw new RangeError(`${cellText(cell)} is more than ${REACH} cells from the first module`);
+      throw new RangeError(t('{0} is more than {1} cells from the first module', cellText(cell), REACH));
     }
     const slot = this.slots.get(key);
     if (role === undefined) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { cellText, equal, type Cell } from './cell';
 import type { LatticeName } from './lattice';
+import { digits, t } from '../texts';
 
 /**
  * What a structure says beyond cells and material: supports, gravity, loads, what single modules have of
@@ -254,6 +255,6 @@ export function slopeOf([x, y, z]: Vector): Slope {
 
 /** For who listens. */
 export const obstacleText = (cell: Cell, { hold, friction }: Obstacle) =>
-  `${cellText(cell)}, obstacle, ${hold === 'bonded' ? 'bonded' : 'contact'}${
-    friction === undefined ? '' : `, friction ${friction}`
+  `${cellText(cell)}, ${t('obstacle, {0}', t(hold ?? 'contact'))}${
+    friction === undefined ? '' : `, ${t('friction {0}', digits(String(friction)))}`
   }`;

@@ -7,6 +7,7 @@ import { latticeOf } from './lattice';
 import {
   isNothing, tidied, withBurden, withObstacles, withoutObstacle, type Burden, type Hold, type Obstacle, type Surroundings,
 } from './surroundings';
+import { t, word } from '../texts';
 
 export type Tool = 'look' | 'add' | 'remove' | 'paint' | 'obstacle' | 'load';
 
@@ -73,7 +74,7 @@ export class Workbench {
   setLattice(name: string): void {
     const lattice = latticeOf(name);
     if (lattice && lattice !== this.robot.lattice) {
-      this.history.replace(`another lattice: ${lattice.title}`, this.robot.inLattice(lattice));
+      this.history.replace(t('another lattice: {0}', word(lattice.title)), this.robot.inLattice(lattice));
     }
   }
 
@@ -106,10 +107,10 @@ export class Workbench {
     if (cells.length === 0 || this.refusesNow()) {
       return;
     }
-    const role = ROLE_NAMES[this.role];
+    const role = t(ROLE_NAMES[this.role]);
     if (this.tool === 'add') {
       const free = cells.filter((cell) => !this.robot.has(cell) && !this.robot.obstacles.has(cell));
-      this.edit(`attaching ${cells.length}`, free, this.role);
+      this.edit(t('attaching {0}', cells.length), free, this.role);
     } else if (this.tool === 'remove') {
       this.remove(cells);
     } else if (this.tool === 'obstacle') {
@@ -117,7 +118,7 @@ export class Workbench {
     } else if (this.tool === 'load') {
       this.load(cells.filter((cell) => this.robot.has(cell)));
     } else if (this.tool === 'paint') {
-      this.edit(`painting ${cells.length} ${role}`, cells.filter((cell) => this.robot.has(cell)), this.role);
+      this.edit(t('painting {0} {1}', cells.length, role), cells.filter((cell) => this.robot.has(cell)), this.role);
     }
   }
 
@@ -130,20 +131,20 @@ export class Workbench {
     const blocked = cells.filter((cell) => obstacles.has(cell));
     const left = blocked.reduce((list: readonly Obstacle[], cell) => withoutObstacle(list, cell), obstacles.obstacles);
     const change = blocked.length > 0 ? tidied({ ...surroundings, obstacles: left }) : undefined;
-    this.edit(`removing ${cells.length}`, cells.filter((cell) => this.robot.has(cell)), undefined, change);
+    this.edit(t('removing {0}', cells.length), cells.filter((cell) => this.robot.has(cell)), undefined, change);
   }
 
   private block(cells: readonly Cell[]): void {
     if (cells.length > 0) {
       const { obstacles } = this.robot.obstacles;
       const list = withObstacles(obstacles, cells, this.hold, this.friction);
-      this.surround(`placing ${cells.length === 1 ? 'an obstacle' : `${cells.length} obstacles`}`, { obstacles: list });
+      this.surround(cells.length === 1 ? t('placing an obstacle') : t('placing {0} obstacles', cells.length), { obstacles: list });
     }
   }
 
   private load(cells: readonly Cell[]): void {
     const { burden } = this;
-    const label = `${isNothing(burden) ? 'taking the load off' : 'loading'} ${cells.length}`;
+    const label = isNothing(burden) ? t('taking the load off {0}', cells.length) : t('loading {0}', cells.length);
     this.history.configure(label, { surroundings: withBurden(this.robot.surroundings, cells, burden) });
   }
 }

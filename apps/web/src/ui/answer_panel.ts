@@ -11,6 +11,7 @@ import {
 } from '../view/colours';
 import { FACET_LOOKS, FacetState, facetAt, facetCount } from '../view/facets';
 import { byId, make } from './dom';
+import { digits, locale, t, word } from '../texts';
 
 /** The answer in words and numbers, the legend, and what is under the pointer. */
 
@@ -29,11 +30,11 @@ export function numberText(value: number, decimals = 2): string {
   if (Math.abs(value) < NOTHING) {
     return '0';
   }
-  return Math.abs(value) < 10 ** (1 - decimals) ? String(Number(value.toPrecision(2))) : value.toFixed(decimals);
+  return digits(Math.abs(value) < 10 ** (1 - decimals) ? String(Number(value.toPrecision(2))) : value.toFixed(decimals));
 }
 
 /** A share of a connection's strength; where it is pressed together, none is used. */
-export const formatRatio = (ratio: number) => (ratio < NOTHING ? 'nothing pulls' : numberText(ratio, 3));
+export const formatRatio = (ratio: number) => (ratio < NOTHING ? t('nothing pulls') : numberText(ratio, 3));
 
 /** "(2,1,2)-(3,1,2)" */
 export function connectionText(robot: EditedRobot, finding: Finding, index: number): string {
@@ -44,8 +45,8 @@ export function connectionText(robot: EditedRobot, finding: Finding, index: numb
 
 export function showFinding(robot: EditedRobot, finding: Finding | undefined): void {
   const answer = finding?.answer;
-  const [word, meaning] = headline(robot, finding);
-  byId('verdict-word').replaceChildren(word, ...(meaning ? [make('small', {}, meaning)] : []));
+  const [verdict, meaning] = headline(robot, finding);
+  byId('verdict-word').replaceChildren(verdict, ...(meaning ? [make('small', {}, meaning)] : []));
   byId('verdict-reason').textContent = reason(robot, finding);
   byId('figures').replaceChildren(
     ...figures(robot, finding, answer).flatMap(([name, value, title]) => [
@@ -58,31 +59,31 @@ export function showFinding(robot: EditedRobot, finding: Finding | undefined): v
 /** The verdict in two words, and what it is marked as. */
 export function headline(robot: EditedRobot, finding: Finding | undefined): [string, string, string] {
   if (robot.count === 0) {
-    return ['Empty', '', 'none'];
+    return [t('Empty'), '', 'none'];
   }
   if (finding?.isFirstLook && finding.answer!.stability.stable) {
-    return ['Stable', 'loads to come', 'undecided'];
+    return [t('Stable'), t('loads to come'), 'undecided'];
   }
   if (finding?.answer) {
     const { verdict, stability } = finding.answer;
-    const [word, meaning] = WORDS[verdict];
+    const [name, meaning] = WORDS[verdict];
     const falls = verdict === 'unstable' && stability.rule === 'contact-forces';
-    return [word, falls ? 'it falls' : meaning, verdict];
+    return [t(name), t(falls ? 'it falls' : meaning), verdict];
   }
-  return finding?.problem ? ['No answer', '', 'none'] : ['…', '', 'none'];
+  return finding?.problem ? [t('No answer'), '', 'none'] : ['…', '', 'none'];
 }
 
 function reason(robot: EditedRobot, finding: Finding | undefined): string {
   if (robot.count === 0) {
-    return 'Click the ground to put down the first module.';
+    return t('Click the ground to put down the first module.');
   }
   if (finding?.isFirstLook) {
     const { stable, rule } = finding.answer!.stability;
     const [yes, no] =
       rule === 'contact-forces'
-        ? ['Contact forces can hold it.', 'No contact forces balance the loads, or nothing is to spare.']
-        : ['The centre of mass is above the support polygon.', 'The centre of mass is not above the support polygon.'];
-    return stable === null ? 'Whether it stays is not certain yet.' : stable ? yes : no;
+        ? ([t('Contact forces can hold it.'), t('No contact forces balance the loads, or nothing is to spare.')] as const)
+        : ([t('The centre of mass is above the support polygon.'), t('The centre of mass is not above the support polygon.')] as const);
+    return stable === null ? t('Whether it stays is not certain yet.') : stable ? yes : no;
   }
   const sentences = finding?.answer?.reasons.map((text) => `${text[0].toUpperCase()}${text.slice(1)}.`);
   return finding?.problem ?? sentences?.join(' ') ?? '';
@@ -90,7 +91,7 @@ function reason(robot: EditedRobot, finding: Finding | undefined): string {
 
 function formatTime(seconds: number): string {
   const ms = 1000 * seconds;
-  return ms < 10 ? `${ms.toPrecision(2)} ms` : ms < 1000 ? `${ms.toFixed(0)} ms` : `${seconds.toFixed(1)} s`;
+  return digits(ms < 10 ? `${ms.toPrecision(2)} ms` : ms < 1000 ? `${ms.toFixed(0)} ms` : `${seconds.toFixed(1)} s`);
 }
 
 type Figure = [name: string, value: string, title?: string];
@@ -99,24 +100,24 @@ function figures(robot: EditedRobot, finding: Finding | undefined, answer: Answe
   const list: Figure[] = [];
   if (answer?.load_ratio_max != null && answer.verdict !== 'unstable') {
     const at = answer.worst === null ? '' : `  ${connectionText(robot, finding!, answer.worst)}`;
-    list.push(['Largest load', formatRatio(answer.load_ratio_max) + at, 'share of the strength']);
+    list.push([t('Largest load'), formatRatio(answer.load_ratio_max) + at, t('share of the strength')]);
   }
   if (answer?.weight_factor != null && answer.verdict !== 'unstable') {
-    const text = `${numberText(answer.weight_factor)} times this weight`;
-    list.push(['First break at', text]);
+    const text = t('{0} times this weight', numberText(answer.weight_factor));
+    list.push([t('First break at'), text]);
   }
   if (answer) {
     list.push(...stabilityFigures(robot, answer));
   }
   if (answer?.second_order) {
-    list.push(['Second order', answer.second_order, 'whether linear theory suffices, by the factor of all loads at which it would buckle']);
+    list.push([t('Second order'), answer.second_order, t('whether linear theory suffices, by the factor of all loads at which it would buckle')]);
   }
-  list.push(['Modules', countText(robot)]);
+  list.push([t('Modules'), countText(robot)]);
   if (answer?.has_loads) {
-    list.push(['Contact', answer.contact_model]);
+    list.push([t('Contact'), word(answer.contact_model)]);
   }
   if (answer?.has_loads && answer.seconds > 0) {
-    list.push(['Solved in', formatTime(answer.seconds)]);
+    list.push([t('Solved in'), formatTime(answer.seconds)]);
   }
   return list;
 }
@@ -125,17 +126,17 @@ function stabilityFigures(robot: EditedRobot, { stability }: Answer): Figure[] {
   const { margin_mm: margin, rule, rigid } = stability;
   const list: Figure[] = [];
   if (rule !== 'contact-forces') {
-    const held = robot.obstacles.obstacles.some((one) => holdOf(one) === 'bonded') ? 'held fast' : 'held by a fixed module';
+    const held = robot.obstacles.obstacles.some((one) => holdOf(one) === 'bonded') ? t('held fast') : t('held by a fixed module');
     const text = margin === null ? held : `${numberText(margin)} mm`;
-    list.push(['Margin', text, 'from the centre of mass to the nearest edge of the support polygon']);
+    list.push([t('Margin'), text, t('from the centre of mass to the nearest edge of the support polygon')]);
   } else {
-    list.push(['Rigid body', rigid.answer, 'whether contact forces can hold it as one rigid body']);
+    list.push([t('Rigid body'), word(rigid.answer), t('whether contact forces can hold it as one rigid body')]);
   }
   if (rigid.tilt_margin_deg !== null && !robot.isPlain) {
-    list.push(['Tilt to spare', `${numberText(rigid.tilt_margin_deg)}°`, 'by which gravity may turn, in any direction']);
+    list.push([t('Tilt to spare'), `${numberText(rigid.tilt_margin_deg)}°`, t('by which gravity may turn, in any direction')]);
   }
   if (rigid.friction_needed !== null && rule === 'contact-forces') {
-    list.push(['Friction needed', numberText(rigid.friction_needed, 3), 'of a rigid body, at the most favourable contact forces; the elastic forces may take more']);
+    list.push([t('Friction needed'), numberText(rigid.friction_needed, 3), t('of a rigid body, at the most favourable contact forces; the elastic forces may take more')]);
   }
   return list;
 }
@@ -145,8 +146,8 @@ function countText(robot: EditedRobot): string {
   for (let slot = 0; slot < robot.count; ++slot) {
     ++counts[robot.roleAt(slot)];
   }
-  const parts = counts.map((count, i) => `${count.toLocaleString('en')} ${ROLE_NAMES[i]}`);
-  return parts.filter((_, i) => counts[i] > 0).join(', ') || 'none';
+  const parts = counts.map((count, i) => `${count.toLocaleString(locale)} ${t(ROLE_NAMES[i])}`);
+  return parts.filter((_, i) => counts[i] > 0).join(', ') || t('none');
 }
 
 export function showLegend(scale: ScaleName, subject: Subject, isOfLosses = false): void {
@@ -160,10 +161,10 @@ export function showLegend(scale: ScaleName, subject: Subject, isOfLosses = fals
   const list = make(
     'ul',
     { className: 'swatches' },
-    ...(subject === 'modules' ? [entry('broken', css(brokenColour(scale)), 'breaks')] : []),
-    entry('fixed', css(FIXED), 'fixed'),
-    entry('', css(UNSTABLE), 'topples'),
-    entry('planned', css(UNKNOWN), 'planned'),
+    ...(subject === 'modules' ? [entry('broken', css(brokenColour(scale)), t('breaks'))] : []),
+    entry('fixed', css(FIXED), t('fixed')),
+    entry('', css(UNSTABLE), t('topples')),
+    entry('planned', css(UNKNOWN), t('planned')),
   );
   byId('legend').replaceChildren(...loads, list);
 }
@@ -177,7 +178,7 @@ function stepLegend(scale: ScaleName): HTMLElement[] {
     step.style.backgroundColor = css(colour);
     bar.append(step);
   });
-  const ticks = ['0', ...LOAD_STEPS.map((most) => (most === Infinity ? 'more' : String(most)))];
+  const ticks = ['0', ...LOAD_STEPS.map((most) => (most === Infinity ? t('more') : digits(String(most))))];
   return [bar, make('div', { className: 'ticks' }, ...ticks.map((text) => make('span', {}, text)))];
 }
 
@@ -190,8 +191,8 @@ const lossLegend = (scale: ScaleName) => {
   return make(
     'ul',
     { className: 'swatches' },
-    entry(brokenColour(scale), 'it does not hold without this module or connection'),
-    entry(loadColour(scale, 0), 'it holds without this connection'),
+    entry(brokenColour(scale), t('it does not hold without this module or connection')),
+    entry(loadColour(scale, 0), t('it holds without this connection')),
   );
 };
 
@@ -200,7 +201,7 @@ function shareLegend(scale: ScaleName): HTMLElement[] {
   const bar = make('div', { className: 'bar-scale' });
   const stops = Array.from({ length: 21 }, (_, i) => `${css(loadColour(scale, i / 20))} ${5 * i}%`);
   bar.style.background = `linear-gradient(to right, ${stops.join(', ')})`;
-  return [bar, make('div', { className: 'ticks' }, ...['0', '0.25', '0.5', '0.75', '1'].map((t) => make('span', {}, t)))];
+  return [bar, make('div', { className: 'ticks' }, ...['0', '0.25', '0.5', '0.75', '1'].map((tick) => make('span', {}, digits(tick))))];
 }
 
 /** How many facets do what, and what they look like. */
@@ -214,11 +215,11 @@ export function showFacetLegend(robot: EditedRobot, finding: Finding | undefined
     const swatch = make('span', { className: `swatch facet ${text}` });
     swatch.style.borderColor = css(colour);
     swatch.style.backgroundColor = isFilled ? css(colour) : 'transparent';
-    return counts[state] > 0 ? [make('li', {}, swatch, `${text} (${counts[state]})`)] : [];
+    return counts[state] > 0 ? [make('li', {}, swatch, `${word(text)} (${counts[state]})`)] : [];
   });
   const list = byId('facet-legend');
   list.hidden = entries.length === 0;
-  list.replaceChildren(make('li', {}, 'Facets that touch:'), ...entries);
+  list.replaceChildren(make('li', {}, t('Facets that touch:')), ...entries);
 }
 
 /** What free faces say, with the marks that the shader draws. */
@@ -229,11 +230,11 @@ export function showFaceLegend(scale: ScaleName): void {
     return make('li', {}, swatch, text);
   };
   byId('face-legend').replaceChildren(
-    make('li', {}, 'One more there:'),
-    entry('plain', loadColour(scale, 0), 'safe'),
-    entry('cross', brokenColour(scale), 'breaks'),
-    entry('rising', UNSTABLE, 'topples'),
-    entry('circle', UNKNOWN, 'not certain'),
+    make('li', {}, t('One more there:')),
+    entry('plain', loadColour(scale, 0), t('safe')),
+    entry('cross', brokenColour(scale), t('breaks')),
+    entry('rising', UNSTABLE, t('topples')),
+    entry('circle', UNKNOWN, t('not certain')),
   );
 }
 
@@ -254,16 +255,16 @@ export function showDetails(
   }
   if (!cell || slot === undefined) {
     panel.replaceChildren();
-    return cell ? `${cellText(cell)}: empty` : '';
+    return cell ? `${cellText(cell)}: ${t('empty')}` : '';
   }
-  const title = `${cellText(cell)}, ${ROLE_NAMES[robot.roleAt(slot)]}${
-    robot.hasFloor && cell[2] === robot.supportZ && robot.roleAt(slot) !== Role.kFixed ? ', on the ground' : ''
+  const title = `${cellText(cell)}, ${t(ROLE_NAMES[robot.roleAt(slot)])}${
+    robot.hasFloor && cell[2] === robot.supportZ && robot.roleAt(slot) !== Role.kFixed ? `, ${t('on the ground')}` : ''
   }`;
   const more = [...ownTexts(robot, cell), ...facetTexts(robot, finding, slot)];
   const rows = finding?.answer?.has_loads ? connectionRows(robot, finding, slot) : [];
   const table = make('table');
   if (rows.length > 0) {
-    const head = make('tr', {}, ...['to', 'load', 'axial', 'bending'].map((t) => make('th', { scope: 'col' }, t)));
+    const head = make('tr', {}, ...(['to', 'load', 'axial', 'bending'] as const).map((text) => make('th', { scope: 'col' }, t(text))));
     table.append(make('thead', {}, head));
     const body = make('tbody');
     for (const row of rows) {
@@ -271,7 +272,7 @@ export function showDetails(
         'tr',
         {},
         make('th', { scope: 'row' }, robot.lattice.sides[row.side]),
-        ...[formatRatio(row.ratio) + row.limit, `${numberText(row.axial)} N`, `${numberText(row.bending, 0)} N mm`].map((t) => make('td', {}, t)),
+        ...[formatRatio(row.ratio) + row.limit, `${numberText(row.axial)} N`, `${numberText(row.bending, 0)} N mm`].map((text) => make('td', {}, text)),
       );
       line.className = row.side === side ? 'pointed' : row.isBroken ? 'breaks' : '';
       body.append(line);
@@ -280,7 +281,7 @@ export function showDetails(
   }
   const notes = more.map((text) => make('p', { className: 'quiet' }, text));
   panel.replaceChildren(make('p', { className: 'cell' }, title), ...notes, ...(rows.length > 0 ? [table] : []));
-  const worst = rows.length > 0 ? `, largest load ${formatRatio(Math.max(...rows.map((r) => r.ratio)))}` : '';
+  const worst = rows.length > 0 ? `, ${t('largest load {0}', formatRatio(Math.max(...rows.map((r) => r.ratio))))}` : '';
   return [title, ...more].join('; ') + worst;
 }
 
@@ -290,12 +291,12 @@ function ownTexts({ ownLoads }: EditedRobot, cell: Cell): string[] {
   const own = ownLoads.modules.get(key);
   const load = ownLoads.loads.get(key);
   const vector = (name: string, value: Vector | undefined, unit: string) =>
-    value?.some((one) => one !== 0) ? [`${name} (${value.join(', ')}) ${unit}`] : [];
+    value?.some((one) => one !== 0) ? [`${name} (${value.map((one) => digits(String(one))).join(locale === 'fr' ? ' ; ' : ', ')}) ${unit}`] : [];
   return [
     ...(own?.kind === undefined ? [] : [own.kind]),
-    ...(own?.mass_kg === undefined ? [] : [`mass ${own.mass_kg} kg`]),
-    ...vector('force', load?.force_n, 'N'),
-    ...vector('torque', load?.torque_nmm, 'N mm'),
+    ...(own?.mass_kg === undefined ? [] : [t('mass {0} kg', digits(String(own.mass_kg)))]),
+    ...vector(t('force'), load?.force_n, 'N'),
+    ...vector(t('torque'), load?.torque_nmm, 'N mm'),
   ];
 }
 
@@ -321,9 +322,9 @@ function facetTexts(robot: EditedRobot, finding: Finding | undefined, slot: numb
   return (facetsOf(finding, answer).get(slot) ?? []).map((i) => {
     const { direction, state, push, slide } = facetAt(answer, i);
     const isIdle = state === FacetState.kUnknown || state === FacetState.kOpen;
-    const force = isIdle ? '' : push < 0 ? `, pulled with ${numberText(-push)} N` : `, pressed with ${numberText(push)} N`;
-    const friction = slide === undefined ? '' : `, ${(100 * slide).toFixed(0)} % of its friction`;
-    return `facet ${robot.lattice.sides[direction]} ${FACET_LOOKS[state].text}${force}${friction}`;
+    const force = isIdle ? '' : `, ${push < 0 ? t('pulled with {0} N', numberText(-push)) : t('pressed with {0} N', numberText(push))}`;
+    const friction = slide === undefined ? '' : `, ${t('{0} % of its friction', (100 * slide).toFixed(0))}`;
+    return t('facet {0} {1}', robot.lattice.sides[direction], word(FACET_LOOKS[state].text)) + force + friction;
   });
 }
 
@@ -354,7 +355,7 @@ function connectionRows({ lattice }: EditedRobot, finding: Finding, slot: number
     const i = sides[lattice.directionCount * slot + side];
     if (i >= 0) {
       const [ratio, axial, bending] = answer.loads.subarray(LOAD_FIELDS * i, LOAD_FIELDS * i + 3);
-      const limit = answer.limits.length > 0 ? ` ${VOCABULARY.limits[answer.limits[i]]}` : '';
+      const limit = answer.limits.length > 0 ? ` ${word(VOCABULARY.limits[answer.limits[i]])}` : '';
       rows.push({ side, ratio, limit, axial, bending, isBroken: answer.broken.includes(i) });
     }
   }

@@ -3,25 +3,24 @@
 import { Vector3 } from 'three';
 import { Judge, type Finding } from '../core/judge';
 import { MOTION_FIELDS } from '../core/types';
-import { equal, type Cell } from '../model/cell';
-import { widen, type Box, type EditedRobot } from '../model/edited_robot';
+import type { Cell } from '../model/cell';
+import type { EditedRobot } from '../model/edited_robot';
 import type { Change } from '../model/history';
 import type { Place } from '../model/lattice';
 import { mayBe, type Workbench } from '../model/workbench';
 import type { ScaleName, Subject } from '../view/colours';
-import { FacetView } from '../view/facets';
-import { Ground } from '../view/ground';
-import { LoadView } from '../view/loads';
-import { ObstacleView } from '../view/obstacles';
 import { RobotView, type Losses } from '../view/robot_view';
 import type { Section } from '../view/section';
 import { OBLIQUE, Stage } from '../view/stage';
 import { connectionText, showDetails, showFaceLegend, showFacetLegend, showFinding, showLegend } from './answer_panel';
 import { showChip, trialText } from './chip';
-import { byId, clearErrors, make, say, tell } from './dom';
+import { byId, clearErrors, make, reasonOf, say, tell } from './dom';
+import { boundsOf, coveredParts, type Exhibit, type Mode } from './exhibit';
+import type { Film } from './film';
 import { placeLabels } from './labels';
-import { followTheme, setTheme } from './theme';
-import { Tip } from './tip';
+import { Pointed } from './pointed';
+import { Scenery } from './scenery';
+import { followTheme } from './theme';
 import { Toppling } from './toppling';
 import { WhereNext } from './where_next';
 
@@ -29,42 +28,6 @@ import { WhereNext } from './where_next';
 const DRAWN_CELLS_MAX = 1.5;
 /** A changed robot is shown without its answer if that takes longer. */
 const LATE_MS = 80;
-
-/** In pixels of the canvas; where there is little room the verdict and the tools stand beside it. */
-function coveredParts(): { top: number; bottom: number } {
-  const height = (part: HTMLElement) => (getComputedStyle(part).position === 'absolute' ? part.offsetHeight : 0);
-  return { top: height(byId('verdict').parentElement!), bottom: height(byId('toolbar')) };
-}
-
-/** What the picture and the panel are of: the robot that is built, a stage of its steps, its deformed shape. */
-export type Mode = 'build' | 'stage' | 'deformed';
-
-/** What is shown in place of the robot that is built: a moment of a sequence, or of the robot under load. */
-export interface Exhibit {
-  mode: Exclude<Mode, 'build'>;
-  robot: EditedRobot;
-  finding: Finding;
-  /** Of all moments of the sequence. */
-  bounds?: Readonly<Box>;
-  /** How much displacements are magnified. */
-  exaggeration?: number;
-}
-
-/** Of modules, and of obstacles as far from them as they are large; further ones would hide the robot. */
-function boundsOf(robot: EditedRobot): Box | undefined {
-  const own = robot.bounds();
-  if (!own) {
-    return undefined;
-  }
-  const reach = Math.max(4, ...own.high.map((high, k) => high - own.low[k]));
-  const box: Box = { low: [...own.low], high: [...own.high] };
-  const near = (place: Place) =>
-    place.map((value, k) => Math.min(Math.max(value, own.low[k] - reach), own.high[k] + reach)) as unknown as Place;
-  for (const { from, to, cells } of robot.obstacles.obstacles) {
-    (cells ?? [from!, to!]).forEach((cell) => widen(box, near(robot.lattice.place(cell))));
-  }
-  return box;
-}
 
 /** The picture of what is on the workbench, and the answer to it. */
 export class App {
@@ -76,35 +39,26 @@ export class App {
   private exhibit?: Exhibit;
   /** Called before something else is shown than what is built, with what: one mode at a time. */
   readonly exhibitListeners: ((mode: Mode) => void)[] = [];
-  private readonly ground = new Ground();
-  private readonly obstacles = new ObstacleView();
-  private readonly facets = new FacetView();
-  private readonly loads = new LoadView();
-  readonly toppling = new Toppling(this.stage, this.view, this.ground, () => this.fallListeners.forEach((tell) => tell()));
+  readonly scenery = new Scenery(this.stage);
+  readonly toppling = new Toppling(this.stage, this.view, this.scenery.ground, () => this.fallListeners.forEach((tell) => tell()));
   /** Called when a fall is asked for, begins or ends. */
   readonly fallListeners: (() => void)[] = [];
-  private readonly tip: Tip;
+  readonly pointed = new Pointed(this.stage, () => this.showPointed());
   private readonly judge = new Judge((finding) => this.found(finding));
   private lateShow = 0;
   private wasUnstable = false;
-  private pointedCell?: Cell;
-  private pointedSide?: number;
-  /** What is pointed at stays so, wherever the pointer goes. */
-  private isPinned = false;
   private noted = '';
 
   constructor(readonly bench: Workbench) {
     this.whereNext = new WhereNext(bench, this.view);
     this.whereNext.onTrial = () => this.showTrial();
-    this.tip = new Tip(this.stage);
     bench.toolListeners.push(() => this.unpin());
     bench.robotListeners.push((what) => this.changed(what));
-    this.stage.robot.add(this.loads.group);
-    this.stage.scene.add(this.ground.group, this.obstacles.group, this.facets.mesh);
     this.stage.followers.push(() =>
       placeLabels(this.stage, this.view, this.robot, this.isToppled ? undefined : this.shown),
     );
     followTheme(() => this.setTheme());
+    this.setTheme();
   }
 
   /** The robot in the picture. */
@@ -172,6 +126,15 @@ export class App {
     this.setTheme();
   }
 
+  /** What may move: each begins its film, or has none now. */
+  readonly films: (() => Film | undefined)[] = [];
+
+  /** Another thing in the colour of writing. */
+  addInked(one: { setInk(ink: number): void }): void {
+    this.scenery.addInked(one);
+    this.setTheme();
+  }
+
   /** Called when something else is shown, or something else is known of it. */
   readonly shownListeners: (() => void)[] = [];
 
@@ -198,7 +161,7 @@ export class App {
   }
 
   /** Loads inside the robot are seen, through its modules. */
-  lookThrough(isOn: boolean): void {
+  lookThrough(isOn: boolean = this.view.xray): void {
     this.stopTopple();
     this.view.xray = isOn;
     this.showRobot();
@@ -216,42 +179,19 @@ export class App {
     this.stage.fit(low, high, from);
   }
 
-  /** What is under the pointer, at a point of the window; `side` is a connection's. Nothing while something is pinned. */
+  /** What is under the pointer, at a point of the window; `side` is a connection's. */
   point(cell: Cell | undefined, side?: number, x?: number, y?: number): void {
-    if (this.isPinned) {
-      return;
-    }
-    if (x !== undefined && y !== undefined) {
-      this.tip.move(x, y);
-    }
-    const { pointedCell } = this;
-    const isSame = (cell && pointedCell ? equal(cell, pointedCell) : cell === pointedCell) && side === this.pointedSide;
-    if (!isSame) {
-      this.pointedCell = cell;
-      this.pointedSide = side;
-      this.showPointed();
-    }
+    this.pointed.point(cell, side, x, y);
   }
 
   /** Keeps the numbers of a module, or of its connection at a side, in the picture. */
   pin(cell: Cell, side?: number): void {
-    this.unpin();
-    this.point(cell, side);
-    const { lattice } = this.robot;
-    const place = new Vector3().fromArray(lattice.place(cell));
-    this.tip.pin(side === undefined ? place : place.addScaledVector(new Vector3().fromArray(lattice.units[side]), 0.5));
-    this.isPinned = true;
+    this.pointed.pin(this.robot, cell, side);
   }
 
   /** False if nothing was pinned. */
   unpin(): boolean {
-    const { isPinned } = this;
-    this.isPinned = false;
-    if (isPinned) {
-      this.tip.pin(undefined);
-      this.point(undefined);
-    }
-    return isPinned;
+    return this.pointed.unpin();
   }
 
   /** Pins the worst connection, and goes where it is seen. */
@@ -287,7 +227,7 @@ export class App {
     this.whereNext.previewRemoval(this.bench.tool === 'remove' && !this.exhibit && this.robot.has(cell) ? cell : undefined);
     const at = this.stage.project(new Vector3().fromArray(this.robot.lattice.place(cell)));
     const box = this.stage.canvas.getBoundingClientRect();
-    this.tip.move((at?.x ?? 0) + box.left, (at?.y ?? 0) + box.top);
+    this.pointed.tip.move((at?.x ?? 0) + box.left, (at?.y ?? 0) + box.top);
     this.sayCursor();
   }
 
@@ -318,11 +258,11 @@ export class App {
     slider.dispatchEvent(new Event('input'));
   }
 
-  startTopple(): void {
+  async startTopple(): Promise<void> {
     if (this.fall) {
       this.straighten();
-      this.toppling.start(this.bench.robot, this.finding!).catch((error: unknown) => {
-        tell(error instanceof Error ? error.message : String(error), true);
+      await this.toppling.start(this.bench.robot, this.finding!).catch((error: unknown) => {
+        tell(reasonOf(error), true);
       });
     }
   }
@@ -345,7 +285,7 @@ export class App {
 
   toggleTopple(): void {
     if (!this.stopTopple()) {
-      this.startTopple();
+      void this.startTopple();
     }
   }
 
@@ -360,7 +300,7 @@ export class App {
     this.view.paintOver = undefined;
     this.unpin();
     this.view.point([]);
-    this.pointedCell = undefined;
+    this.pointed.cell = undefined;
     this.whereNext.reset();
     this.finding = undefined;
     clearTimeout(this.lateShow);
@@ -400,7 +340,7 @@ export class App {
     const answer = this.finding?.answer;
     this.wasUnstable = answer?.verdict === 'unstable';
     if (this.fall === 'topples' && !wasUnstable && !matchMedia('(prefers-reduced-motion: reduce)').matches) {
-      this.startTopple();
+      void this.startTopple();
     }
   }
 
@@ -423,17 +363,7 @@ export class App {
     showFinding(robot, finding);
     this.showTrial();
     this.shownListeners.forEach((tell) => tell());
-    const bounds = robot.bounds() ?? { low: [0, 0, 0], high: [0, 0, 0] };
-    const middle: [number, number] = [
-      (bounds.low[0] + bounds.high[0]) / 2,
-      (bounds.low[1] + bounds.high[1]) / 2,
-    ];
-    const reach = Math.max(bounds.high[0] - bounds.low[0], bounds.high[1] - bounds.low[1]) + 10;
-    this.ground.place(robot.floorHeight, middle, reach, robot.hasFloor);
-    this.ground.show(robot, finding?.answer?.stability);
-    this.obstacles.show(robot);
-    this.loads.show(robot);
-    this.facets.show(robot, judged);
+    this.scenery.show(robot, finding);
     showFacetLegend(robot, finding);
     if (!this.exhibit) {
       this.whereNext.paint();
@@ -442,12 +372,12 @@ export class App {
   }
 
   private showPointed(): void {
-    const { view, robot, pointedCell, pointedSide } = this;
-    const slot = pointedCell && robot.slot(pointedCell);
-    const isSeam = slot !== undefined && pointedSide !== undefined;
-    const other = isSeam ? robot.slot(robot.lattice.neighbour(pointedCell!, pointedSide)) : undefined;
+    const { view, robot, pointed: { cell, side, isPinned, tip } } = this;
+    const slot = cell && robot.slot(cell);
+    const isSeam = slot !== undefined && side !== undefined;
+    const other = isSeam ? robot.slot(robot.lattice.neighbour(cell!, side)) : undefined;
     view.point([slot, other].filter((one) => one !== undefined));
-    showDetails(robot, this.shown, pointedCell, pointedSide);
+    showDetails(robot, this.shown, cell, side);
     const { trial } = this.whereNext;
     const details = byId('details');
     if (trial) {
@@ -456,8 +386,8 @@ export class App {
       details.prepend(would);
     }
     // Who builds looks at the robot, and at the connection that is near.
-    details.classList.toggle('brief', this.bench.tool !== 'look' && !this.isPinned);
-    this.tip.show(details.childElementCount > 0);
+    details.classList.toggle('brief', this.bench.tool !== 'look' && !isPinned);
+    tip.show(details.childElementCount > 0);
   }
 
   /** What the ghost would come to. */
@@ -481,7 +411,7 @@ export class App {
   }
 
   private setTheme(): void {
-    setTheme(this.view, this.ground, [this.obstacles, this.loads]);
+    this.scenery.setTheme(this.view);
     this.showRobot();
   }
 }

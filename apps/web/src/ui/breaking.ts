@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { App } from './app';
 import { byId, reportLines } from './dom';
+import type { Film } from './film';
+import { t } from '../texts';
 
 /** What the user touches of a fall: a robot that topples, or breaks and its pieces fall. */
 export class BreakingPanel {
@@ -13,8 +15,17 @@ export class BreakingPanel {
       toppling.isSlow = !toppling.isSlow;
       byId('fall-slowly').setAttribute('aria-pressed', String(toppling.isSlow));
     };
+    app.films.push(() => (app.fall ? this.film() : undefined));
     app.shownListeners.push(() => this.show());
     app.fallListeners.push(() => this.show());
+  }
+
+  private async *film(): Film {
+    const { app } = this;
+    if (!app.isToppled) {
+      await app.startTopple();
+    }
+    yield* app.toppling.moments();
   }
 
   private show(): void {
@@ -22,9 +33,9 @@ export class BreakingPanel {
     byId('breaking').hidden = fall === undefined;
     if (fall) {
       const { isToppled, isAsking, pieces } = toppling;
-      const [begin, end] = fall === 'topples' ? ['Let it topple', 'Stand it up'] : ['Let it break', 'Put it together again'];
-      byId('breaking-title').textContent = fall === 'topples' ? 'The fall' : 'After the break';
-      byId('topple').textContent = isToppled ? end : isAsking ? 'Judging what is left … Stop' : begin;
+      const [begin, end] = fall === 'topples' ? ([t('Let it topple'), t('Stand it up')] as const) : ([t('Let it break'), t('Put it together again')] as const);
+      byId('breaking-title').textContent = fall === 'topples' ? t('The fall') : t('After the break');
+      byId('topple').textContent = isToppled ? end : isAsking ? t('Judging what is left … Stop') : begin;
       byId('breaking-text').textContent = pieces ? reportLines(pieces.breaking.text, 'cascade') : '';
       byId('fall-shown').hidden = !isToppled;
     }

@@ -4,8 +4,9 @@ import { Attempt, CHALLENGES, fileOf, type Challenge } from '../model/challenges
 import { GoalView } from '../view/goals';
 import type { App } from './app';
 import { shortRatio } from './chip';
-import { byId, counted, make, say } from './dom';
+import { byId, make, say } from './dom';
 import { openText } from './files';
+import { counted, t, word } from '../texts';
 
 /** What a puzzle asks for, which of it is done, and the next one. */
 
@@ -42,14 +43,14 @@ export class ChallengePanel {
   async begin(challenge: Challenge): Promise<void> {
     this.isOpening = true;
     const { bench } = this.app;
-    const isOpen = await openText(bench, new TextEncoder().encode(fileOf(challenge)), challenge.title).finally(() => (this.isOpening = false));
+    const isOpen = await openText(bench, new TextEncoder().encode(fileOf(challenge)), word(challenge.title)).finally(() => (this.isOpening = false));
     if (isOpen) {
       this.isSolved = false;
       this.attempt = new Attempt(challenge, bench.robot);
-      byId('challenge-title').textContent = `Challenge ${CHALLENGES.indexOf(challenge) + 1} of ${CHALLENGES.length}: ${challenge.title}`;
-      byId('challenge-text').textContent = challenge.text;
+      byId('challenge-title').textContent = t('Challenge {0} of {1}: {2}', CHALLENGES.indexOf(challenge) + 1, CHALLENGES.length, word(challenge.title));
+      byId('challenge-text').textContent = word(challenge.text);
       this.show();
-      say(`${byId('challenge-title').textContent}. ${challenge.text}`);
+      say(`${byId('challenge-title').textContent}. ${word(challenge.text)}`);
     }
   }
 
@@ -70,14 +71,15 @@ export class ChallengePanel {
     }
     const conditions = attempt.conditions(robot, answer);
     byId('challenge-list').replaceChildren(
-      ...conditions.map(({ text, isMet }) => make('li', { className: isMet ? 'met' : '' }, make('span', { className: 'unseen' }, isMet ? 'done: ' : 'open: '), text)),
+      ...conditions.map(({ text, isMet }) => make('li', { className: isMet ? 'met' : '' }, make('span', { className: 'unseen' }, isMet ? t('done: ') : t('open: ')), text)),
     );
     const wasSolved = this.isSolved;
     this.isSolved = answer !== undefined && conditions.every(({ isMet }) => isMet);
     byId('challenge-done').hidden = !this.isSolved;
     if (this.isSolved) {
       const ratio = answer!.load_ratio_max;
-      byId('challenge-done').textContent = `Solved, with ${counted(robot.count, 'module')}${ratio ? `; the largest load is ${shortRatio(ratio)}` : ''}. Save has a link to your solution.`;
+      const count = counted(robot.count, 'module');
+      byId('challenge-done').textContent = `${ratio ? t('Solved, with {0}; the largest load is {1}.', count, shortRatio(ratio)) : t('Solved, with {0}.', count)} ${t('Save has a link to your solution.')}`;
       this.keep(attempt.challenge.id);
     }
     if (this.isSolved && !wasSolved) {
@@ -98,7 +100,7 @@ export class ChallengePanel {
 export function challengeButtons(begin: (challenge: Challenge) => void): HTMLElement[] {
   const solved = solvedOnes();
   return CHALLENGES.map((challenge, i) => {
-    const button = make('button', { type: 'button', className: solved.has(challenge.id) ? 'met' : '' }, `${i + 1} ${challenge.title}`);
+    const button = make('button', { type: 'button', className: solved.has(challenge.id) ? 'met' : '' }, `${i + 1} ${word(challenge.title)}`);
     button.dataset.challenge = challenge.id;
     button.onclick = () => begin(challenge);
     return button;

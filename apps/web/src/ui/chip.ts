@@ -5,6 +5,7 @@ import type { Answer, Trial } from '../core/types';
 import type { EditedRobot } from '../model/edited_robot';
 import { headline, numberText } from './answer_panel';
 import { byId } from './dom';
+import { t } from '../texts';
 
 /**
  * The verdict over the picture, always in sight: a word, a gauge of the largest load from 0 by 1 to what is
@@ -46,12 +47,12 @@ function numbers(answer: Answer | undefined, trial: Trial | undefined): string[]
   const isTried = trial !== undefined && trial.verdict !== null;
   const load = change(ratio === undefined ? undefined : shortRatio(ratio), isTried && trial.ratio >= 0 ? shortRatio(trial.ratio) : undefined);
   const spare = margin === undefined ? '' : change(numberText(margin, 1), isTried ? numberText(trial.marginMm, 1) : undefined);
-  return [...(load && trial?.verdict !== 'unstable' ? [`load ${load}`] : []), ...(spare ? [`margin ${spare} mm`] : [])];
+  return [...(load && trial?.verdict !== 'unstable' ? [t('load {0}', load)] : []), ...(spare ? [t('margin {0} mm', spare)] : [])];
 }
 
 /** What a ghost would come to, in words and numbers. */
 export const trialText = (trial: Trial, answer: Answer | undefined) =>
-  trial.verdict === null ? (trial.refusal ?? 'no such module can be here') : [WOULD[trial.verdict], ...numbers(answer, trial)].join(', ');
+  trial.verdict === null ? (trial.refusal ?? t('no such module can be here')) : [t(WOULD[trial.verdict]), ...numbers(answer, trial)].join(', ');
 
 /** `note` stands behind the numbers. */
 export function showChip(robot: EditedRobot, finding: Finding | undefined, trial?: Trial, note = ''): void {
@@ -69,7 +70,7 @@ export function showChip(robot: EditedRobot, finding: Finding | undefined, trial
   part('ghost').dataset.verdict = trial?.verdict ?? '';
   part('most').textContent = String(most);
   const broken = ratio === undefined ? 0 : answer!.broken.length;
-  const breaks = broken > 0 ? [`${broken} of ${answer!.connections.length / 3} break`] : [];
+  const breaks = broken > 0 ? [t('{0} of {1} break', broken, answer!.connections.length / 3)] : [];
   byId('chip-numbers').textContent = finding?.problem ?? [...numbers(answer, trial), ...breaks, ...(note ? [note] : [])].join(' · ');
   byId('verdict').dataset.verdict = state;
 }

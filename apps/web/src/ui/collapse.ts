@@ -4,7 +4,8 @@ import { Cancelled, CoreClient } from '../core/client';
 import type { LimitLoad } from '../core/types';
 import type { EditedRobot } from '../model/edited_robot';
 import type { App } from './app';
-import { byId } from './dom';
+import { byId, reasonOf } from './dom';
+import { digits, t } from '../texts';
 
 /** The limit load, found on demand or by holdfast check --limit, and the collapse beyond it as a motion. */
 
@@ -34,10 +35,10 @@ export class Collapse {
     byId('limit-text').hidden = false;
     byId('limit-text').textContent =
       limit === null
-        ? 'Not found within a minute; holdfast check --limit may find it.'
+        ? t('Not found within a minute; holdfast check --limit may find it.')
         : limit.factor === null
-          ? 'Whatever the factor of all loads, some forces would balance them.'
-          : `No forces balance more than ${limit.factor.toPrecision(4)} times these loads.`;
+          ? t('Whatever the factor of all loads, some forces would balance them.')
+          : t('No forces balance more than {0} times these loads.', digits(limit.factor.toPrecision(4)));
     byId('collapse').hidden = limit === null || limit.velocities.length === 0;
     this.shown = limit ? { robot: this.app.bench.robot, limit } : undefined;
   }
@@ -50,7 +51,7 @@ export class Collapse {
     } catch (error) {
       if (!(error instanceof Cancelled)) {
         byId('limit-text').hidden = false;
-        byId('limit-text').textContent = error instanceof Error ? error.message : String(error);
+        byId('limit-text').textContent = reasonOf(error);
       }
     } finally {
       button.disabled = false;

@@ -4,10 +4,11 @@ import { LOAD_FIELDS, type Answer } from '../core/types';
 import type { App } from './app';
 import { connectionText, numberText } from './answer_panel';
 import { byId, make } from './dom';
+import { t, type Text } from '../texts';
 
 /** What every connection of the robot in the picture carries, as a table; a row goes where its connection is. */
 
-const COLUMNS: readonly [title: string, unit: string, field: number, decimals: number][] = [
+const COLUMNS: readonly [title: Text, unit: string, field: number, decimals: number][] = [
   ['Load', '', 0, 3],
   ['Axial', 'N', 1, 2],
   ['Bending', 'N mm', 2, 0],
@@ -42,7 +43,7 @@ export class ConnectionTable {
     this.rows = ROWS;
     const count = answer?.has_loads ? answer.connections.length / 3 : 0;
     const breaks = answer && answer.verdict !== 'unstable' ? answer.broken.length : 0;
-    byId('connections-count').textContent = breaks > 0 ? `${breaks} of ${count} break` : String(count);
+    byId('connections-count').textContent = breaks > 0 ? t('{0} of {1} break', breaks, count) : String(count);
     byId('connections').hidden = count === 0;
     this.show();
   }
@@ -62,7 +63,7 @@ export class ConnectionTable {
     const order = this.order(answer);
     const more = byId('connections-more');
     more.hidden = order.length <= this.rows;
-    more.textContent = `More of ${order.length}`;
+    more.textContent = t('More of {0}', order.length);
     const isBroken = new Set(answer.broken);
     const body = Array.from(order.subarray(0, this.rows), (i) => this.row(answer, i, isBroken.has(i)));
     byId('connections-table').replaceChildren(this.head(), make('tbody', {}, ...body));
@@ -78,7 +79,7 @@ export class ConnectionTable {
 
   private head(): HTMLElement {
     const cells = COLUMNS.map(([title, unit, field]) => {
-      const button = make('button', { type: 'button' }, unit ? `${title} ${unit}` : title);
+      const button = make('button', { type: 'button' }, unit ? `${t(title)} ${unit}` : t(title));
       button.onclick = () => this.sortBy(field);
       const cell = make('th', { scope: 'col' }, button);
       if (field === this.field) {
@@ -87,7 +88,7 @@ export class ConnectionTable {
       }
       return cell;
     });
-    return make('thead', {}, make('tr', {}, make('th', { scope: 'col' }, 'Between'), ...cells));
+    return make('thead', {}, make('tr', {}, make('th', { scope: 'col' }, t('Between')), ...cells));
   }
 
   private row(answer: Answer, index: number, isBroken: boolean): HTMLElement {

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 import { Question } from '../core/question';
 import type { App } from './app';
-import { byId, make } from './dom';
+import { byId, make, reasonOf } from './dom';
 import { numberText } from './answer_panel';
+import { digits, t } from '../texts';
 
 /** The equilibrium in the deformed shape, true to scale, under a factor of all loads that a slider gives. */
 
@@ -51,12 +52,12 @@ export class DeformedPanel {
 
   private show(isShown: boolean): void {
     byId('deformed').hidden = !isShown;
-    byId('deform').textContent = isShown ? 'Back to the straight shape' : 'True to scale';
+    byId('deform').textContent = isShown ? t('Back to the straight shape') : t('True to scale');
     byId('deformed-text').textContent = '';
   }
 
   private later(): void {
-    byId('load-factor-value').textContent = `${this.factor.toFixed(2)} ×`;
+    byId('load-factor-value').textContent = `${digits(this.factor.toFixed(2))} ×`;
     byId('deformed-text').textContent = '…';
     clearTimeout(this.timer);
     this.timer = window.setTimeout(() => void this.ask(), DELAY_MS);
@@ -76,12 +77,12 @@ export class DeformedPanel {
       if (!answer) {
         return;
       }
-      app.bench.closed = 'The deformed shape is shown: “Back to the straight shape” ends that.';
+      app.bench.closed = t('The deformed shape is shown: “Back to the straight shape” ends that.');
       app.setExhibit({ mode: 'deformed', robot, finding: { answer, slots }, exaggeration: 1 });
-      const reached = answer.factor !== null && answer.factor < 1 ? ` Shown: ${numberText(answer.factor * factor)} times the loads, the last that it bears.` : '';
+      const reached = answer.factor !== null && answer.factor < 1 ? ` ${t('Shown: {0} times the loads, the last that it bears.', numberText(answer.factor * factor))}` : '';
       text.textContent = `${sentence(answer.reasons)}${reached}`;
     } catch (error) {
-      text.replaceChildren(make('span', { className: 'fault' }, error instanceof Error ? error.message : String(error)));
+      text.replaceChildren(make('span', { className: 'fault' }, reasonOf(error)));
     }
   }
 }

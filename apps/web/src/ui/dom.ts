@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
+import { t, word } from '../texts';
 
 /** The element with an id, which index.html has. */
 export function byId<T extends HTMLElement = HTMLElement>(id: string): T {
@@ -23,8 +24,8 @@ export function make<K extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
-/** A number of things with their noun: 1 step, 2 steps. */
-export const counted = (count: number, one: string): string => `${count} ${count === 1 ? one : `${one}s`}`;
+/** Why something was not done, in words. */
+export const reasonOf = (error: unknown): string => word(error instanceof Error ? error.message : String(error));
 
 export function download(name: string, content: Blob): void {
   const url = URL.createObjectURL(content);
@@ -36,7 +37,7 @@ const SHOWN_MS = 7000;
 
 /** A message below the others, until it is closed; `more` stands beside its text. */
 export function addMessage(text: string, isError = false, ...more: HTMLElement[]): HTMLElement {
-  const close = make('button', { type: 'button', className: 'close', ariaLabel: 'Close' });
+  const close = make('button', { type: 'button', className: 'close', ariaLabel: t('Close') });
   const className = isError ? 'message error' : 'message';
   const message = make('div', { className }, make('p', {}, text), ...more, close);
   close.append(icon('close'));

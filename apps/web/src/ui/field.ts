@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Vector } from '../model/surroundings';
 import { make } from './dom';
+import { digits, t } from '../texts';
 
 /** Fields for numbers. What cannot be is refused where it was typed, in words, and nothing is changed. */
 
@@ -31,12 +32,12 @@ export interface NumberField extends Field<number | undefined> {
 }
 
 /** 1e12, not thirteen digits. */
-const short = (value: number) => (Math.abs(value) < 1e6 ? String(value) : value.toExponential().replace('+', ''));
+const short = (value: number) => digits(Math.abs(value) < 1e6 ? String(value) : value.toExponential().replace('+', ''));
 
 /** Why a number is refused, if it is. */
 export function outside(value: number, unit: string, { lowest, highest }: Range = ANY): string | undefined {
   const isFine = value >= lowest && value <= highest;
-  return isFine ? undefined : `${short(value)} is not possible: expected ${short(lowest)} to ${short(highest)}${unit && ` ${unit}`}.`;
+  return isFine ? undefined : t('{0} is not possible: expected {1} to {2}{3}.', short(value), short(lowest), short(highest), unit && ` ${unit}`);
 }
 
 function faultOf(text: string, { lowest, highest, isWhole, unit }: Partial<NumberField>): string | undefined {
@@ -45,18 +46,18 @@ function faultOf(text: string, { lowest, highest, isWhole, unit }: Partial<Numbe
     return undefined;
   }
   if (!Number.isFinite(value)) {
-    return `“${text}” is not a number.`;
+    return t('“{0}” is not a number.', text);
   }
   return isWhole && !Number.isInteger(value)
-    ? `${value} is not a whole number.`
+    ? t('{0} is not a whole number.', digits(String(value)))
     : outside(value, unit ?? '', { lowest: lowest ?? ANY.lowest, highest: highest ?? ANY.highest });
 }
 
 /** Undefined for an empty text. */
 const numberOf = (text: string) => (text.trim() === '' ? undefined : Number(text.trim().replace(',', '.')));
 
-const shown = (value: number | undefined, digits = 6) =>
-  value === undefined ? '' : String(Number(value.toPrecision(digits)) + 0);
+const shown = (value: number | undefined, precision = 6) =>
+  value === undefined ? '' : digits(String(Number(value.toPrecision(precision)) + 0));
 
 let faults = 0;
 

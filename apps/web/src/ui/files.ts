@@ -8,8 +8,13 @@ import { linkFragment, readFragment } from '../model/link';
 import { withoutHead, type Surroundings } from '../model/surroundings';
 import type { Workbench } from '../model/workbench';
 import type { App } from './app';
-import { byId, download, tell } from './dom';
+import { byId, download, reasonOf, tell } from './dom';
+import { ROLE_NAMES, cellText } from '../model/cell';
+import { OBSTACLE } from '../view/colours';
+import { glbOf } from '../view/solid';
+import { gifOf } from './film';
 import { makePoster } from './poster';
+import { t } from '../texts';
 
 /** Structures in and out: files, links, pictures, reports. Nothing that fails touches the robot. */
 
@@ -44,18 +49,18 @@ export async function openText(
   // What is said of the file is not said behind a dialog.
   document.querySelectorAll('dialog[open]').forEach((dialog) => (dialog as HTMLDialogElement).close());
   let note: HTMLElement | undefined;
-  const late = setTimeout(() => (note = tell(`reading ${origin} …`, false, Infinity)), LATE_MS);
+  const late = setTimeout(() => (note = tell(t('reading {0} …', origin), false, Infinity)), LATE_MS);
   try {
     const opened = await client.open(bytes).finally(() => clearTimeout(late));
     const robot = robotOf(opened, new TextDecoder().decode(bytes), name);
-    bench.history.replace(`opening ${robot.name || 'a structure'}`, robot);
+    bench.history.replace(t('opening {0}', robot.name || t('a structure')), robot);
     const notes = opened.warnings;
     if (notes.length > 0) {
       tell(`${origin}: ${notes.slice(0, 3).join('; ')}${notes.length > 3 ? '; …' : ''}`);
     }
     return true;
   } catch (error) {
-    tell(`${origin}: ${error instanceof Error ? error.message : String(error)}`, true);
+    tell(`${origin}: ${reasonOf(error)}`, true);
     return false;
   } finally {
     note?.remove();
@@ -65,23 +70,23 @@ export async function openText(
 export async function openFile(bench: Workbench, file: File): Promise<void> {
   if (file.size > FILE_BYTES_MAX) {
     const size = (file.size / 2 ** 20).toFixed(0);
-    tell(`${file.name}: ${size} MiB, this page reads at most 256; the program holdfast reads more`, true);
+    tell(t('{0}: {1} MiB, this page reads at most 256; the program holdfast reads more', file.name, size), true);
     return;
   }
   try {
     const bytes = new Uint8Array(await file.arrayBuffer());
     await openText(bench, bytes, file.name.replace(/\.(xml|json)$/i, ''), file.name);
   } catch {
-    tell(`${file.name}: cannot be read`, true);
+    tell(t('{0}: cannot be read', file.name), true);
   }
 }
 
-export const BROKEN_LINK = 'the link is broken: it may have been cut; nothing was opened';
+export const BROKEN_LINK = t('the link is broken: it may have been cut; nothing was opened');
 
 /** The structure in the page's address; undefined if there is none. Throws if it is broken. */
 export async function openFragment(bench: Workbench): Promise<boolean | undefined> {
   const bytes = await readFragment(location.hash);
-  return bytes && openText(bench, bytes, 'the link');
+  return bytes && openText(bench, bytes, t('the link'));
 }
 
 export function listenToFiles(bench: Workbench): void {
@@ -133,39 +138,50 @@ export async function take(app: App, what: string): Promise<void> {
         return await save(Output.kSvg, 'svg', 'image/svg+xml');
       case 'png':
         return await savePng(app);
+      case 'glb':
+        return download(`${fileName(bench)}.glb`, await solidOf(app));
+      case 'gif':
+        return download(`${fileName(bench)}.gif`, await gifOf(app));
       case 'link':
         return await copyLink(bench);
       default:
         return await showReport(bench);
     }
   } catch (error) {
-    tell(error instanceof Error ? error.message : String(error), true);
+    tell(reasonOf(error), true);
   }
+}
+
+/** What is in the picture, where it stands. */
+function solidOf({ robot, view, scenery: { obstacles } }: App): Promise<Blob> {
+  const modules = view.solids().map(({ slot, place, colour }) => ({ name: `${ROLE_NAMES[robot.roleAt(slot)]} ${cellText(robot.cellAt(slot))}`, place, colour }));
+  const blocks = obstacles.faces.visible ? obstacles.faces.geometry : undefined;
+  return glbOf(robot.name, robot.lattice, robot.pitchMm, modules, blocks, OBSTACLE.contact);
 }
 
 async function savePng(app: App): Promise<void> {
   const blob = await makePoster(app);
   if (!blob) {
-    throw new Error('the browser gives no picture');
+    throw new Error(t('the browser gives no picture'));
   }
   download(`${fileName(app.bench)}.png`, blob);
 }
 
 /** A page on a disk has no address that others know. */
-const here = () => (location.protocol === 'file:' ? ' It opens on this computer only, as this page is a file here.' : '');
+const here = () => (location.protocol === 'file:' ? ` ${t('It opens on this computer only, as this page is a file here.')}` : '');
 
 async function copyLink(bench: Workbench): Promise<void> {
   const fragment = await linkFragment(await write(bench, Output.kJson));
   if (fragment.length > LINK_LENGTH_MAX) {
-    tell(`too large for a link (${fragment.length} letters): save it as a file`, true);
+    tell(t('too large for a link ({0} letters): save it as a file', fragment.length), true);
     return;
   }
   history.replaceState(null, '', fragment);
   try {
     await navigator.clipboard.writeText(location.href);
-    tell(`The link is copied; it holds the whole structure.${here()}`);
+    tell(`${t('The link is copied; it holds the whole structure.')}${here()}`);
   } catch {
-    tell(`The link is in the address bar; it holds the whole structure.${here()}`);
+    tell(`${t('The link is in the address bar; it holds the whole structure.')}${here()}`);
   }
 }
 

@@ -15,6 +15,7 @@ import { challengeButtons } from './challenges';
 import { byId, make } from './dom';
 import { openText, robotOf } from './files';
 import { nameOf, whenOf, type Keeper } from './keeper';
+import { t, word } from '../texts';
 
 /** The gallery: a small picture of each example in the colours of its answer. */
 
@@ -41,13 +42,13 @@ function fill(bench: Workbench, dialog: HTMLDialogElement): void {
   for (const group of GALLERY) {
     const cards = group.examples.map((example) => {
       const open = () => void openText(bench, new TextEncoder().encode(example.source()), example.name);
-      const title = example.title.length === 1 ? '' : example.title;
-      const made = card(dialog, title, example.text, open);
+      const title = example.title.length === 1 ? '' : word(example.title);
+      const made = card(dialog, title, word(example.text), open);
       made.button.dataset.example = example.name;
       void exampleRobot(example).then((robot) => judge(robot, made, !example.sketch));
       return made.button;
     });
-    byId('gallery-list').append(section(group.title, cards));
+    byId('gallery-list').append(section(word(group.title), cards));
   }
 }
 
@@ -63,12 +64,12 @@ function showKept(dialog: HTMLDialogElement, keeper: Keeper): void {
   });
   const place = byId('kept');
   place.hidden = cards.length === 0;
-  const forget = make('button', { type: 'button', textContent: 'Forget these' });
+  const forget = make('button', { type: 'button', textContent: t('Forget these') });
   forget.onclick = () => {
     keeper.forgetAll();
     showKept(dialog, keeper);
   };
-  place.replaceChildren(...section('Built here, kept in this browser', cards).children, forget);
+  place.replaceChildren(...section(t('Built here, kept in this browser'), cards).children, forget);
 }
 
 const section = (title: string, cards: HTMLElement[]) =>
@@ -102,12 +103,12 @@ async function judge(robot: EditedRobot, { picture, verdict }: Card, saysVerdict
   try {
     const answer = await client.check(data);
     if (saysVerdict) {
-      verdict.textContent = answer.verdict;
+      verdict.textContent = t(answer.verdict);
       verdict.dataset.verdict = answer.verdict;
     }
     drawSmall(picture, robot, answer, slots);
   } catch {
-    verdict.textContent = 'no answer';
+    verdict.textContent = t('no answer');
   }
 }
 

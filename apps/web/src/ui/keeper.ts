@@ -3,8 +3,9 @@
 import type { EditedRobot } from '../model/edited_robot';
 import { Kept, originOf, type KeptRobot } from '../model/kept';
 import type { Workbench } from '../model/workbench';
-import { addMessage, counted, make, tell } from './dom';
+import { addMessage, make, reasonOf, tell } from './dom';
 import { askedFor } from './start';
+import { counted, locale, t } from '../texts';
 
 /** So long after a change it is kept, and longer if it is large; at once when the page goes away. */
 const DELAY_MS = 300;
@@ -43,7 +44,7 @@ export class Keeper {
     const entry = this.kept?.last(originOf(askedFor()));
     const isBack = entry !== undefined && this.open(entry);
     if (isBack) {
-      tell(`Back where you left off: ${nameOf(entry)}. “New” begins afresh, the gallery has examples.`);
+      tell(t('Back where you left off: {0}. “New” begins afresh, the gallery has examples.', nameOf(entry)));
     }
     return isBack;
   }
@@ -52,8 +53,8 @@ export class Keeper {
   offer(): void {
     const entry = this.kept?.last(originOf(askedFor()));
     if (entry) {
-      const button = make('button', { type: 'button', textContent: 'Bring it back' });
-      const message = addMessage(`You changed this structure here on ${whenOf(entry)}.`, false, button);
+      const button = make('button', { type: 'button', textContent: t('Bring it back') });
+      const message = addMessage(t('You changed this structure here on {0}.', whenOf(entry)), false, button);
       button.onclick = () => {
         message.remove();
         this.open(entry);
@@ -71,10 +72,10 @@ export class Keeper {
 
   open(entry: KeptRobot): boolean {
     try {
-      this.bench.history.replace(`bringing back ${nameOf(entry)}`, this.restore(entry));
+      this.bench.history.replace(t('bringing back {0}', nameOf(entry)), this.restore(entry));
       return true;
     } catch (error) {
-      tell(error instanceof Error ? error.message : String(error), true);
+      tell(reasonOf(error), true);
       return false;
     }
   }
@@ -93,13 +94,13 @@ export class Keeper {
     const wasFull = this.isFull;
     this.isFull = !this.kept.keep(robot, originOf(askedFor()));
     if (this.isFull && !wasFull) {
-      tell('Too large to be kept when the page is closed: save it as a file.');
+      tell(t('Too large to be kept when the page is closed: save it as a file.'));
     }
   }
 }
 
 export const nameOf = ({ name, modules }: KeptRobot) =>
-  name || `a structure of ${counted(modules.length / 4, 'module')}`;
+  name || t('a structure of {0}', counted(modules.length / 4, 'module'));
 
 export const whenOf = ({ time }: KeptRobot) =>
-  new Date(time).toLocaleString('en', { dateStyle: 'medium', timeStyle: 'short' });
+  new Date(time).toLocaleString(locale, { dateStyle: 'medium', timeStyle: 'short' });

@@ -5,9 +5,10 @@ import { HOLDS } from '../model/surroundings';
 import type { Workbench } from '../model/workbench';
 import type { App } from './app';
 import { byId, say } from './dom';
+import { t, type Text } from '../texts';
 
 /** Every key and what it does; the help shows the same list. */
-export const KEYS: readonly [keys: string, text: string][] = [
+export const KEYS: readonly [keys: string, text: Text][] = [
   ['A  D  P  V', 'tools: attach, remove, paint, look only'],
   ['O  L', 'tools: obstacles, loads'],
   ['1  2  3', 'what is attached or painted: existing, planned, fixed; an obstacle: 1 contact, 2 bonded'],
@@ -19,7 +20,9 @@ export const KEYS: readonly [keys: string, text: string][] = [
   ['Q  E  +  −', 'turn left, turn right, nearer, further'],
   ['H  W', 'see all, see the worst connection'],
   ['6  7  8  9', 'see it from the front right, the front, the right, above'],
+  ['5', 'orthographic, or in perspective'],
   ['X  M', 'see through the modules; the picture alone, for an audience'],
+  ['N', 'how forces flow to the ground: N, V, M, T, and none again'],
   ['T', 'let it topple or break, if it does; put it together again'],
   ['K  ,  .', 'the robot’s own computation: play or pause, step back, step on'],
   ['S  U  R', 'steps: play or pause, to the first unsafe stage, record'],
@@ -84,7 +87,7 @@ function onStage(app: App, event: KeyboardEvent): boolean {
   }
   if (event.key === 'Enter' || event.key === ' ') {
     if (cursor) {
-      const label = bench.tool === 'look' ? 'nothing is done: the tool is look' : '';
+      const label = bench.tool === 'look' ? t('nothing is done: the tool is look') : '';
       bench.use([cursor]);
       app.moveCursor(cursor);
       say(label);

@@ -1,15 +1,20 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 import type { Place } from '../model/lattice';
+import { recall, remember } from '../model/settings';
 import { OBLIQUE } from '../view/stage';
 import type { Section } from '../view/section';
 import type { App } from './app';
 import { byId, say } from './dom';
+import { chooseTheme } from './theme';
+import { digits, t } from '../texts';
 
 /** How the robot is looked at: from which side, cut open, through its modules, before an audience. */
 
 /** Straight down nothing is up in the picture: a hair beside it y is. */
 const SIDES: Record<string, Place> = { oblique: OBLIQUE, front: [0, -1, 0], right: [1, 0, 0], top: [0, -1e-4, 1] };
+
+const PROJECTIONS = ['perspective', 'orthographic'] as const;
 
 /** By what is cut away: all that is above a plane, before it, or to its right. */
 const CUTS: Record<string, Pick<Section, 'axis' | 'sense'>> = {
@@ -37,10 +42,19 @@ export function makeLooking(app: App): Record<string, () => void> {
     return act;
   };
   const presenting = toggle('present', present);
+  const project = toggle('parallel', (isOn) => {
+    app.stage.isParallel = isOn;
+    remember('projection', isOn ? 'orthographic' : 'perspective');
+  });
+  if (recall('projection', PROJECTIONS) === 'orthographic') {
+    project();
+  }
+  chooseTheme(byId('theme'));
   byId('present-end').onclick = presenting;
   return {
     x: toggle('xray', (isOn) => app.lookThrough(isOn)),
     m: presenting,
+    5: project,
     6: () => seeFrom('oblique'),
     7: () => seeFrom('front'),
     8: () => seeFrom('right'),
@@ -52,7 +66,7 @@ export function makeLooking(app: App): Record<string, () => void> {
 function present(isOn: boolean): void {
   document.body.classList.toggle('presenting', isOn);
   if (isOn) {
-    say('the picture alone; M brings the rest back');
+    say(t('the picture alone; M brings the rest back'));
   }
 }
 
@@ -90,7 +104,7 @@ class Cut {
     const cut = CUTS[this.side.value];
     const value = Number(this.slider.value);
     this.app.setSection(cut && { ...cut, at: value });
-    byId('cut-value').textContent = cut ? `${'xyz'[cut.axis]} ${cut.sense > 0 ? '≤' : '≥'} ${value.toFixed(1)}` : '';
+    byId('cut-value').textContent = cut ? `${'xyz'[cut.axis]} ${cut.sense > 0 ? '≤' : '≥'} ${digits(value.toFixed(1))}` : '';
   }
 }
 

@@ -9,7 +9,8 @@ import { Packets } from '../view/packets';
 import { moduleLoads, type ModuleLoads } from '../view/robot_view';
 import type { App } from './app';
 import { formatRatio } from './answer_panel';
-import { byId, icon, make, say, tell, type IconName } from './dom';
+import { byId, icon, make, reasonOf, say, tell, type IconName } from './dom';
+import { digits, t, word, type Text } from '../texts';
 
 /** Plays what the modules tell each other until every one of them knows the verdict. */
 
@@ -18,7 +19,7 @@ const PHASE_COLOURS: Rgb[] = [
   [150, 156, 164], [86, 156, 196], [70, 120, 190], [64, 148, 140], [120, 160, 90],
   [190, 160, 70], [226, 130, 60], [190, 100, 150], [150, 90, 180], [90, 100, 110],
 ];
-const MEANINGS = ['link: greeting, acknowledgement', 'wave', 'order, down the tree', 'report, up the tree', 'vector between neighbours', 'planned module'];
+const MEANINGS: Text[] = ['link: greeting, acknowledgement', 'wave', 'order, down the tree', 'report, up the tree', 'vector between neighbours', 'planned module'];
 const MEANING_COLOURS: Rgb[] = [
   [150, 156, 164], [47, 128, 206], [232, 108, 28], [32, 150, 90], [176, 78, 190], [205, 160, 0],
 ];
@@ -78,13 +79,13 @@ export class Player {
     offer('method', VOCABULARY.methods);
     offer('link', VOCABULARY.links);
     const options = SPEEDS.map((speed) =>
-      make('option', { value: String(speed), textContent: `${speed} ×`, selected: speed === SPEED_FIRST }),
+      make('option', { value: String(speed), textContent: `${digits(String(speed))} ×`, selected: speed === SPEED_FIRST }),
     );
     byId('speed').append(...options);
     const legend = MEANINGS.map((text, i) => {
       const swatch = make('span', { className: 'swatch round' });
       swatch.style.backgroundColor = css(MEANING_COLOURS[i]);
-      return make('li', {}, swatch, text);
+      return make('li', {}, swatch, t(text));
     });
     byId('packet-legend').append(...legend);
   }
@@ -97,7 +98,7 @@ export class Player {
     this.app.view.paintOver = undefined;
     this.packets.clear();
     byId('player').hidden = true;
-    byId('simulate').textContent = 'Let the robot find out';
+    byId('simulate').textContent = t('Let the robot find out');
   }
 
   toggle(): void {
@@ -125,7 +126,7 @@ export class Player {
     }
     app.stopTopple();
     this.close();
-    byId('simulate').textContent = 'Stop the simulation';
+    byId('simulate').textContent = t('Stop the simulation');
     const value = (id: string) => Number(byId<HTMLSelectElement>(id).value);
     const { data, slots } = app.bench.robot.toData();
     try {
@@ -134,10 +135,10 @@ export class Player {
       this.open(trace, slots);
     } catch (error) {
       if (!(error instanceof Cancelled)) {
-        tell(error instanceof Error ? error.message : String(error), true);
+        tell(reasonOf(error), true);
       }
     }
-    byId('simulate').textContent = this.trace ? 'Once more' : 'Let the robot find out';
+    byId('simulate').textContent = this.trace ? t('Once more') : t('Let the robot find out');
   }
 
   private open(trace: Trace, slots: Int32Array): void {
@@ -185,11 +186,12 @@ export class Player {
   }
 
   private result(trace: Trace): string {
-    const ratio = trace.load_ratio_max === null ? '' : `, load ratio ${formatRatio(trace.load_ratio_max)}`;
-    const time = trace.simulated_s === null ? '' : `${trace.simulated_s.toFixed(2)} s, `;
-    const agree = trace.all_modules_agree ? 'all modules agree' : 'not all modules agree';
-    const cut = trace.is_complete ? '' : ' Only the first million events are played.';
-    return `The robot's own verdict: ${trace.verdict}${ratio}; ${agree}. ${time}${trace.rounds} rounds, ${trace.messages} packets, ${trace.iterations} iterations.${cut}`;
+    const ratio = trace.load_ratio_max === null ? '' : `, ${t('load ratio {0}', formatRatio(trace.load_ratio_max))}`;
+    const time = trace.simulated_s === null ? '' : `${digits(trace.simulated_s.toFixed(2))} s, `;
+    const agree = trace.all_modules_agree ? t('all modules agree') : t('not all modules agree');
+    const cut = trace.is_complete ? '' : ` ${t('Only the first million events are played.')}`;
+    const counts = [trace.rounds, trace.messages, trace.iterations] as const;
+    return t('The robot\'s own verdict: {0}; {1}. {2}{3} rounds, {4} packets, {5} iterations.', `${word(trace.verdict)}${ratio}`, agree, time, ...counts) + cut;
   }
 
   private play(): void {
@@ -210,7 +212,7 @@ export class Player {
   private showPlaying(): void {
     const button = byId('play');
     button.replaceChildren(icon(this.isPlaying ? 'pause' : 'play'));
-    button.setAttribute('aria-label', this.isPlaying ? 'Pause' : 'Play');
+    button.setAttribute('aria-label', this.isPlaying ? t('Pause') : t('Play'));
   }
 
   private animate(now: number): boolean {
@@ -308,9 +310,10 @@ export class Player {
     const knowing = moment.verdicts.reduce((sum, verdict) => sum + (verdict > 0 ? 1 : 0), 0);
     this.allKnow = knowing >= agents;
     const phase = Math.max(...moment.phases, 0);
-    const time = trace.ticks_per_second > 0 ? `${(this.time / trace.ticks_per_second).toFixed(3)} s` : `round ${Math.floor(this.time)}`;
-    const order = moment.order > 0 ? ` · order: ${trace.orders[moment.order].text}` : '';
-    byId('moment').textContent = `${time} · ${VOCABULARY.phases[phase]} · iteration ${moment.iterations} · ${moment.packets} packets · ${knowing} of ${agents} know the verdict${order}`;
+    const time = trace.ticks_per_second > 0 ? `${digits((this.time / trace.ticks_per_second).toFixed(3))} s` : t('round {0}', Math.floor(this.time));
+    const order = moment.order > 0 ? [t('order: {0}', trace.orders[moment.order].text)] : [];
+    const counts = [t('iteration {0}', moment.iterations), t('{0} packets', moment.packets), t('{0} of {1} know the verdict', knowing, agents)];
+    byId('moment').textContent = [time, word(VOCABULARY.phases[phase]), ...counts, ...order].join(' · ');
     byId<HTMLInputElement>('time').value = String(Math.round((10_000 * this.time) / Math.max(this.end, 1)));
   }
 
@@ -353,5 +356,5 @@ export class Player {
 
 /** Fills a list to choose from. */
 function offer(id: string, choices: readonly Choice[]): void {
-  byId(id).append(...choices.map(({ value, text }) => make('option', { value: String(value), textContent: text })));
+  byId(id).append(...choices.map(({ value, text }) => make('option', { value: String(value), textContent: word(text) })));
 }

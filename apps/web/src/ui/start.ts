@@ -5,9 +5,10 @@ import { FIRST_EXAMPLE } from '../model/examples';
 import { isLink, readFragment } from '../model/link';
 import type { App } from './app';
 import type { Collapse } from './collapse';
-import { byId, make, tell } from './dom';
+import { byId, make, reasonOf, tell } from './dom';
 import { BROKEN_LINK, openFragment, openText, reportOf } from './files';
 import type { Keeper } from './keeper';
+import { t } from '../texts';
 
 /** What a page shows first: a link's robot, that of `holdfast view`, what was built before, an example. */
 
@@ -58,7 +59,7 @@ export async function openFirst({ bench }: App, keeper: Keeper, collapse: Collap
 function showReport({ report }: Start): void {
   if (report !== undefined) {
     byId('report-text').textContent = report;
-    byId('report-check').textContent = 'Written by holdfast check when this page was made.';
+    byId('report-check').textContent = t('Written by holdfast check when this page was made.');
     byId<HTMLDialogElement>('report').showModal();
   }
 }
@@ -68,14 +69,14 @@ export async function showWithoutPicture(reason: string): Promise<void> {
   const viewed = readStart();
   document.querySelectorAll<HTMLElement>('header nav, header label').forEach((part) => (part.hidden = true));
   const text = make('pre', { tabIndex: 0 }, '…');
-  const note = make('p', { className: 'quiet' }, `This browser cannot draw the robot (${reason}); this is its report.`);
+  const note = make('p', { className: 'quiet' }, t('This browser cannot draw the robot ({0}); this is its report.', reason));
   document.querySelector('main')!.replaceWith(make('main', { id: 'words' }, note, text));
   try {
     const link = await readFragment(location.hash);
     const source = link ? new TextDecoder().decode(link) : (viewed?.structure ?? FIRST_EXAMPLE.source());
-    const own = () => reportOf(source, link ? 'the link' : (viewed?.name ?? FIRST_EXAMPLE.name), Output.kReportText);
+    const own = () => reportOf(source, link ? t('the link') : (viewed?.name ?? FIRST_EXAMPLE.name), Output.kReportText);
     text.textContent = link ? await own() : (viewed?.report ?? (await own()));
   } catch (error) {
-    text.textContent = error instanceof Error ? error.message : String(error);
+    text.textContent = reasonOf(error);
   }
 }

@@ -6,6 +6,7 @@ import { gravityOf, isNothing, isStraightDown, slopeOf, type Slope, type Vector 
 import type { Workbench } from '../model/workbench';
 import { byId, make } from './dom';
 import { MOST, addNumber, addVector, outside, type Range } from './field';
+import { t, word } from '../texts';
 
 /** The forms of lattice, gravity, floor, obstacles and loads; what they show follows the robot. */
 
@@ -14,7 +15,7 @@ const MASS: Range = { lowest: 1 / MOST, highest: MOST };
 
 export function makeSurroundings(bench: Workbench): void {
   const select = byId<HTMLSelectElement>('lattice');
-  select.append(...LATTICES.map(({ name, title }) => make('option', { value: name }, title)));
+  select.append(...LATTICES.map(({ name, title }) => make('option', { value: name }, word(title))));
   select.onchange = () => bench.setLattice(select.value);
   const shows = [...gravityFields(bench), ...supportFields(bench)];
   const showAll = () => {
@@ -38,14 +39,14 @@ function gravityFields(bench: Workbench): (() => void)[] {
   const setGravity = (gravity: Vector) => {
     const { material } = bench.robot;
     const strength = Math.hypot(...gravity);
-    const fault = strength === 0 ? 'Without gravity nothing rests on anything.' : outside(strength, 'm/s²', GRAVITY_RANGE);
+    const fault = strength === 0 ? t('Without gravity nothing rests on anything.') : outside(strength, 'm/s²', GRAVITY_RANGE);
     if (fault) {
       return fault;
     }
     if (isStraightDown(gravity)) {
-      bench.surround('gravity', { gravity_m_s2: undefined }, { material: withGravity(material, -gravity[2]) });
+      bench.surround(t('gravity'), { gravity_m_s2: undefined }, { material: withGravity(material, -gravity[2]) });
     } else {
-      bench.surround('turning gravity', { gravity_m_s2: gravity });
+      bench.surround(t('turning gravity'), { gravity_m_s2: gravity });
     }
     return undefined;
   };
@@ -62,13 +63,13 @@ function gravityFields(bench: Workbench): (() => void)[] {
   const setSlope = (change: Partial<Slope>) => setGravity(gravityOf({ ...slope(), ...change }));
   return [
     addNumber(place, {
-      label: 'Slope',
+      label: t('Slope'),
       unit: '°',
       get: () => slope().angle,
       set: (value = 0) => setSlope({ angle: value }),
     }),
     addNumber(place, {
-      label: 'Downhill from +x',
+      label: t('Downhill from +x'),
       unit: '°',
       get: () => slope().downhill,
       set: (value = 0) => {
@@ -76,30 +77,30 @@ function gravityFields(bench: Workbench): (() => void)[] {
         return setSlope({ downhill: value });
       },
     }),
-    addVector(place, { label: 'Gravity', unit: 'm/s²', get: () => bench.robot.gravity, set: setGravity }),
+    addVector(place, { label: t('Gravity'), unit: 'm/s²', get: () => bench.robot.gravity, set: setGravity }),
   ];
 }
 
 function supportFields(bench: Workbench): (() => void)[] {
   const place = byId('surroundings');
   const floor = make('input', { type: 'checkbox', id: 'floor' });
-  floor.onchange = () => bench.surround('the floor', { support_z: floor.checked ? undefined : null });
-  place.append(make('label', { className: 'row' }, 'Floor', floor));
+  floor.onchange = () => bench.surround(t('the floor'), { support_z: floor.checked ? undefined : null });
+  place.append(make('label', { className: 'row' }, t('Floor'), floor));
   return [
     () => (floor.checked = bench.robot.hasFloor),
     addNumber(place, {
-      label: 'Floor’s friction',
+      label: t('Floor’s friction'),
       unit: '',
-      otherwise: 'no slip',
+      otherwise: t('no slip'),
       ...FRICTION,
       get: () => bench.robot.surroundings.floor?.friction,
       set: (value) =>
-        bench.surround('the friction of the floor', { floor: value === undefined ? undefined : { friction: value } }),
+        bench.surround(t('the friction of the floor'), { floor: value === undefined ? undefined : { friction: value } }),
     }),
     addNumber(place, {
-      label: 'Obstacles’ friction',
+      label: t('Obstacles’ friction'),
       unit: '',
-      otherwise: 'no slip',
+      otherwise: t('no slip'),
       ...FRICTION,
       get: () => bench.friction,
       set: (value) => void (bench.friction = value),
@@ -112,27 +113,27 @@ function burdenFields(bench: Workbench): (() => void)[] {
   const change = (part: Partial<typeof bench.burden>) => bench.setBurden({ ...bench.burden, ...part });
   const shows = [
     addNumber(place, {
-      label: 'Own mass',
+      label: t('Own mass'),
       unit: 'kg',
-      otherwise: 'as all',
+      otherwise: t('as all'),
       ...MASS,
       get: () => bench.burden.mass,
       set: (mass) => change({ mass }),
     }),
     addVector(place, {
-      label: 'Force',
+      label: t('Force'),
       unit: 'N',
       get: () => bench.burden.force,
       set: (force) => change({ force }),
     }),
     addVector(place, {
-      label: 'Torque',
+      label: t('Torque'),
       unit: 'N mm',
       get: () => bench.burden.torque,
       set: (torque) => change({ torque }),
     }),
   ];
-  const none = make('button', { type: 'button', textContent: 'Nothing: take loads off' });
+  const none = make('button', { type: 'button', textContent: t('Nothing: take loads off') });
   none.onclick = () => change({ mass: undefined, force: [0, 0, 0], torque: [0, 0, 0] });
   place.append(none);
   return [...shows, () => (none.disabled = isNothing(bench.burden))];

@@ -10,9 +10,12 @@ import { STAGES, Sequence, type StageRobot } from '../model/sequence';
 import type { App } from './app';
 import { formatRatio, numberText } from './answer_panel';
 import { drawBands } from './bands';
-import { byId, counted, icon, say, tell, type IconName } from './dom';
+import { byId, icon, reasonOf, say, tell, type IconName } from './dom';
+import type { Film } from './film';
 import { openText, take } from './files';
 import { findingOf } from './stage_finding';
+import { followTheme } from './theme';
+import { counted, t } from '../texts';
 
 /** Steps in time: judges every stage of a robot's sequence, plays it, records another. */
 
@@ -21,6 +24,9 @@ const STAGE_MS = 550;
 const WHOLE_MS = 60_000;
 /** A changed robot is judged anew when nothing has changed for so long. */
 const DELAY_MS = 300;
+
+/** A film has so many at most. */
+const FILM_STAGES = 240;
 
 /** The loads of so many stages are kept. */
 const STAGES_KNOWN = 8;
@@ -66,7 +72,8 @@ export class Timeline {
       this.show(Number((event.target as HTMLInputElement).value));
     };
     byId('bands').onclick = (event) => this.pointAt(event);
-    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.drawBands());
+    app.films.push(() => (this.sequence && (app.mode === 'stage' || !app.fall) ? this.film() : undefined));
+    followTheme(() => this.drawBands());
     byId('scale').addEventListener('change', () => this.drawBands());
   }
 
@@ -103,7 +110,7 @@ export class Timeline {
     const { recorder } = this;
     this.recorder = undefined;
     if (recorder.steps.length > 0) {
-      bench.history.replace(`recording ${counted(recorder.steps.length, 'step')}`, recorder.result(bench.robot));
+      bench.history.replace(t('recording {0}', counted(recorder.steps.length, 'step')), recorder.result(bench.robot));
     }
     this.showRecording();
     this.changed();
@@ -130,7 +137,7 @@ export class Timeline {
     if (this.recorder && what === 'robot') {
       const { steps } = this.recorder;
       this.recorder = undefined;
-      tell(`The recording has ended, as another robot is here; ${counted(steps.length, 'step')} of it are not kept.`);
+      tell(t('The recording has ended, as another robot is here; {0} of it are not kept.', counted(steps.length, 'step')));
     }
     this.recorder?.follow(robot, history.isUndoing);
     this.showRecording();
@@ -168,7 +175,7 @@ export class Timeline {
   private async judge(): Promise<void> {
     const { robot } = this.app.bench;
     byId('judge-steps').hidden = true;
-    const judged = await this.wait('Judging every stage …', () =>
+    const judged = await this.wait(t('Judging every stage …'), () =>
       this.client.judgeSteps(robot.toData(true).data, robot.name, robot.base),
     );
     if (judged) {
@@ -198,7 +205,7 @@ export class Timeline {
     const { robot } = bench;
     this.buildOn();
     this.forget();
-    const found = await this.wait(`Seeking an order, for ${ORDER_SECONDS} s at most …`, () =>
+    const found = await this.wait(t('Seeking an order, for {0} s at most …', ORDER_SECONDS), () =>
       this.client.findOrder(robot.toData(true).data, ORDER_SECONDS, robot.name, robot.base),
     );
     if (found?.structure) {
@@ -224,8 +231,8 @@ export class Timeline {
       answer = await ask();
       text = '';
     } catch (error) {
-      const reason = error instanceof Error ? error.message : String(error);
-      text = error instanceof Cancelled ? 'Stopped.' : reason;
+      const reason = reasonOf(error);
+      text = error instanceof Cancelled ? t('Stopped.') : reason;
     }
     if (question !== this.question) {
       return undefined;
@@ -260,7 +267,7 @@ export class Timeline {
     this.at = at;
     this.begun = performance.now();
     this.loads = this.known.get(at);
-    this.app.bench.closed = 'A stage of the steps is shown: “Back to building” ends that.';
+    this.app.bench.closed = t('A stage of the steps is shown: “Back to building” ends that.');
     this.exhibit(this.isMoving ? 0 : (this.report!.waypoint ?? 0));
     this.showPlace();
     if (!this.loads) {
@@ -268,6 +275,20 @@ export class Timeline {
     }
     if (this.isPlaying && at + 1 < this.stageCount) {
       void this.findLoads(at + 1);
+    }
+  }
+
+  /** Stage by stage, with its loads; of many steps some. */
+  private async *film(): Film {
+    const { judged, stageCount } = this;
+    this.pause();
+    for (let i = 0; i < Math.min(stageCount, FILM_STAGES) && judged === this.judged; ++i) {
+      const at = stageCount <= FILM_STAGES ? i : Math.round((i * (stageCount - 1)) / (FILM_STAGES - 1));
+      this.show(at);
+      if (!this.known.has(at)) {
+        await this.findLoads(at);
+      }
+      yield at === stageCount - 1 ? 3 * STAGE_MS : STAGE_MS;
     }
   }
 
@@ -324,7 +345,7 @@ export class Timeline {
       }
     } catch (error) {
       if (!(error instanceof Cancelled)) {
-        tell(error instanceof Error ? error.message : String(error), true);
+        tell(reasonOf(error), true);
       }
     }
   }
@@ -371,7 +392,7 @@ export class Timeline {
   private showPlaying(): void {
     const button = byId('stages-play');
     button.replaceChildren(icon(this.isPlaying ? 'pause' : 'play'));
-    button.setAttribute('aria-label', this.isPlaying ? 'Pause the steps' : 'Play the steps');
+    button.setAttribute('aria-label', this.isPlaying ? t('Pause the steps') : t('Play the steps'));
   }
 
   /** Where in the sequence the picture is. */
@@ -390,10 +411,11 @@ export class Timeline {
   private placeText(): string {
     const { report, judged } = this;
     if (!report || !judged) {
-      return 'The robot before the first step.';
+      return t('The robot before the first step.');
     }
-    const what = `Step ${this.stepIndex} (of 0 to ${judged.texts.length - 1}), ${STAGES[this.stage]}: ${report.verdict}`;
-    return `${what}. It does: ${judged.texts[this.stepIndex]}.`;
+    const last = judged.texts.length - 1;
+    const names = [t(STAGES[this.stage]), t(report.verdict)] as const;
+    return t('Step {0} (of 0 to {1}), {2}: {3}. It does: {4}.', this.stepIndex, last, ...names, judged.texts[this.stepIndex]);
   }
 
   private drawBands(): void {
@@ -407,7 +429,7 @@ export class Timeline {
     const { recorder } = this;
     const button = byId('record');
     button.setAttribute('aria-pressed', String(recorder !== undefined));
-    button.textContent = recorder ? 'End the recording' : 'Record steps';
+    button.textContent = recorder ? t('End the recording') : t('Record steps');
     if (recorder) {
       byId('sequence-text').textContent = recordingText(recorder);
     }
@@ -420,7 +442,7 @@ export class Timeline {
 }
 
 const recordingText = ({ steps }: Recorder) =>
-  `Recording: ${counted(steps.length, 'step')}. Every change of the modules is one.`;
+  t('Recording: {0}. Every change of the modules is one.', counted(steps.length, 'step'));
 
 function hasPlanned(robot: EditedRobot): boolean {
   return Array.from({ length: robot.count }, (_, slot) => robot.roleAt(slot)).includes(Role.kPlanned);
@@ -429,8 +451,8 @@ function hasPlanned(robot: EditedRobot): boolean {
 function summary({ report, texts }: JudgedSteps): string {
   const isSafe = ({ stages }: (typeof report.steps)[number]) => STAGES.every((stage) => stages[stage].verdict === 'safe');
   const safe = report.steps.filter(isSafe).length;
-  const ratio = report.load_ratio_max === null ? '' : `; largest load ${formatRatio(report.load_ratio_max)}`;
-  const margin = report.margin_min_mm === null ? '' : `; smallest margin ${numberText(report.margin_min_mm)} mm`;
-  const first = report.first_unsafe ? `; first unsafe: step ${report.first_unsafe.step}, ${report.first_unsafe.stage}` : '';
-  return `${safe} of ${counted(texts.length, 'step')} safe in every stage${ratio}${margin}${first}.`;
+  const ratio = report.load_ratio_max === null ? '' : `; ${t('largest load {0}', formatRatio(report.load_ratio_max))}`;
+  const margin = report.margin_min_mm === null ? '' : `; ${t('smallest margin {0} mm', numberText(report.margin_min_mm))}`;
+  const first = report.first_unsafe ? `; ${t('first unsafe: step {0}, {1}', report.first_unsafe.step, t(report.first_unsafe.stage))}` : '';
+  return `${t('{0} of {1} safe in every stage', safe, counted(texts.length, 'step'))}${ratio}${margin}${first}.`;
 }

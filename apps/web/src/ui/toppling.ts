@@ -13,6 +13,11 @@ import type { Stage } from '../view/stage';
 /** What breaks is looked at before it falls. */
 const LOOK_SECONDS = 0.7;
 const SLOWLY = 0.2;
+/** A fall takes a few tenths of a second: its film is slower. */
+const FILM_SPEED = 0.25;
+/** Of a film: each moment, and the last one. */
+const MOMENT_SECONDS = 0.07;
+const END_SECONDS = 1.5;
 /** Where no floor ends a fall, pieces leave the picture so many cells below the robot. */
 const DEPTH_CELLS = 6;
 
@@ -23,6 +28,8 @@ export class Toppling {
   /** Rounds of the fall whose modules have its colour. */
   private begun = 0;
   isSlow = false;
+  /** While its moments are drawn one by one. */
+  private isHeld = false;
 
   constructor(
     private readonly stage: Stage,
@@ -77,6 +84,23 @@ export class Toppling {
     }
   }
 
+  /** Draws the fall moment by moment, until it is stopped; gives how long each lasts, in ms. */
+  *moments(): Generator<number> {
+    const { playing } = this;
+    this.isHeld = true;
+    try {
+      const end = playing?.pieces.seconds ?? 0;
+      for (let moment = 0, at = 0; playing && playing === this.playing && at < end; ++moment) {
+        at = Math.min(moment * MOMENT_SECONDS * FILM_SPEED, end);
+        playing.seconds = at;
+        this.draw();
+        yield 1000 * (moment === 0 ? LOOK_SECONDS : at < end ? MOMENT_SECONDS : END_SECONDS);
+      }
+    } finally {
+      this.isHeld = false;
+    }
+  }
+
   /** Upright again; colours follow with the view's paint(). */
   stop(): void {
     this.question.cancel();
@@ -108,7 +132,7 @@ export class Toppling {
 
   private move(now: number): boolean {
     const { playing } = this;
-    if (!playing || playing.seconds >= playing.pieces.seconds) {
+    if (!playing || this.isHeld || playing.seconds >= playing.pieces.seconds) {
       return false;
     }
     playing.seconds += (Math.max(now - playing.last, 0) / 1000) * (this.isSlow ? SLOWLY : 1);

@@ -4,7 +4,8 @@ import { Question } from '../core/question';
 import type { Losses } from '../core/types';
 import { equal, type Cell } from '../model/cell';
 import type { App } from './app';
-import { byId, reportLines, tell } from './dom';
+import { byId, reasonOf, reportLines, tell } from './dom';
+import { digits, t } from '../texts';
 
 /** How sure it is where strengths scatter, and what follows from the loss of each single part. */
 
@@ -13,8 +14,6 @@ const DELAY_MS = 120;
 const SLIDERS = ['scatter', 'scatter-common', 'scatter-mass'] as const;
 /** Losses that are not judged by then are undecided. */
 const LOSS_SECONDS = 30;
-
-const message = (error: unknown) => (error instanceof Error ? error.message : String(error));
 
 /** The probability that every connection holds, beside the verdict, for a scatter that a slider gives. */
 export class Sure {
@@ -49,14 +48,16 @@ export class Sure {
         this.app.note = sure.holds === null ? '' : probabilityText(sure.holds, sure.fails!);
       }
     } catch (error) {
-      byId('sure-text').textContent = message(error);
+      byId('sure-text').textContent = reasonOf(error);
     }
   }
 }
 
+const short = (share: number) => digits(String(Number(share.toPrecision(2))));
+
 /** Of the smaller of both, as its digits are those that say something. */
 const probabilityText = (holds: number, fails: number) =>
-  fails < 0.01 ? `fails with p = ${Number(fails.toPrecision(2))}` : `holds with p = ${Number(holds.toPrecision(2))}`;
+  fails < 0.01 ? t('fails with p = {0}', short(fails)) : t('holds with p = {0}', short(holds));
 
 /** Colours of connections and modules by what follows from their loss. */
 export class LossPanel {
@@ -70,7 +71,7 @@ export class LossPanel {
 
   private forget(): void {
     this.question.cancel();
-    byId('lose').textContent = 'Try the loss of each part';
+    byId('lose').textContent = t('Try the loss of each part');
     byId('lose-text').textContent = '';
     this.hide();
   }
@@ -88,7 +89,7 @@ export class LossPanel {
       this.forget();
       return;
     }
-    button.textContent = 'Trying … Stop';
+    button.textContent = t('Trying … Stop');
     const { data } = app.bench.robot.toData();
     try {
       const losses = await question.ask((core) => core.loseOne(data, LOSS_SECONDS));
@@ -97,7 +98,7 @@ export class LossPanel {
       }
     } catch (error) {
       this.forget();
-      tell(message(error), true);
+      tell(reasonOf(error), true);
     }
   }
 
@@ -105,7 +106,7 @@ export class LossPanel {
     const { finding, bench: { robot } } = this.app;
     byId('lose-text').textContent = reportLines(text, 'lose one');
     const isTried = finding?.answer?.verdict === 'safe';
-    byId('lose').textContent = isTried ? 'Back to loads' : 'Try the loss of each part';
+    byId('lose').textContent = isTried ? t('Back to loads') : t('Try the loss of each part');
     byId('lose').setAttribute('aria-pressed', String(isTried));
     if (!isTried) {
       return;

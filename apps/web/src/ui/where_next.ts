@@ -7,6 +7,7 @@ import type { Workbench } from '../model/workbench';
 import { OBSTACLE, UNKNOWN, loadColour, verdictColour, type Rgb } from '../view/colours';
 import { FaceCode, type RobotView } from '../view/robot_view';
 import { byId, say } from './dom';
+import { t } from '../texts';
 
 /** Robots up to this size are tried at once where the pointer is. */
 const TRIAL_COUNT_MAX = 1500;
@@ -67,7 +68,7 @@ export class WhereNext {
     const { robot, role } = this.bench;
     const button = byId('faces');
     this.paint();
-    button.textContent = 'Where next?';
+    button.textContent = t('Where next?');
     byId('face-legend').hidden = !this.isShown;
     if (!this.isShown || !this.knowsLoads) {
       return;
@@ -80,9 +81,9 @@ export class WhereNext {
       }
     });
     if (isDone && this.isShown) {
-      button.textContent = 'Where next?';
+      button.textContent = t('Where next?');
       const safe = places.filter((place) => this.places.known(place, role)?.verdict === 'safe').length;
-      say(`${safe} of ${places.length} free places are safe for one more ${ROLE_NAMES[role]} module`);
+      say(t('{0} of {1} free places are safe for one more {2} module', safe, places.length, t(ROLE_NAMES[role])));
     }
   }
 

@@ -8,7 +8,8 @@ import { OBSTACLE, loadColour } from '../view/colours';
 import { FaceCode } from '../view/robot_view';
 import type { App } from './app';
 import { shortRatio } from './chip';
-import { byId, make } from './dom';
+import { byId, make, reasonOf } from './dom';
+import { digits, t, type Text } from '../texts';
 
 /** Why a robot does not hold, and single changes that would make it hold; each is done by a click. */
 
@@ -16,11 +17,11 @@ import { byId, make } from './dom';
 const SMALL_COUNT = 150;
 const DELAY_MS = 350;
 
-const WORDS: Record<RemedyKind, { text: (cell: string) => string; title: string }> = {
-  module: { text: (cell) => `Attach a module at ${cell}`, title: 'a counterweight, or a brace' },
-  prop: { text: (cell) => `Put a prop in ${cell}`, title: 'an obstacle below a module, which bears it' },
-  fixing: { text: (cell) => `Fix the module ${cell}`, title: 'to the ground or a wall' },
-  removal: { text: (cell) => `Take the module ${cell} away`, title: '' },
+const WORDS: Record<RemedyKind, { text: Text; title: Text | '' }> = {
+  module: { text: 'Attach a module at {0}', title: 'a counterweight, or a brace' },
+  prop: { text: 'Put a prop in {0}', title: 'an obstacle below a module, which bears it' },
+  fixing: { text: 'Fix the module {0}', title: 'to the ground or a wall' },
+  removal: { text: 'Take the module {0} away', title: '' },
 };
 
 export class WhyPanel {
@@ -55,7 +56,7 @@ export class WhyPanel {
     byId('why-list').replaceChildren();
     const isSmall = app.bench.robot.count <= SMALL_COUNT;
     byId('why-ask').hidden = isSmall;
-    byId('why-ask').textContent = 'Find out';
+    byId('why-ask').textContent = t('Find out');
     if (!byId('why').hidden && isSmall) {
       this.timer = window.setTimeout(() => void this.ask(), DELAY_MS);
     }
@@ -66,10 +67,10 @@ export class WhyPanel {
     const button = byId('why-ask');
     if (question.isBusy) {
       question.cancel();
-      button.textContent = 'Find out';
+      button.textContent = t('Find out');
       return;
     }
-    button.textContent = 'Trying single changes … Stop';
+    button.textContent = t('Trying single changes … Stop');
     const { data, slots } = app.bench.robot.toData();
     try {
       const why = await question.ask((core) => core.why(data));
@@ -77,7 +78,7 @@ export class WhyPanel {
         this.show(why, slots);
       }
     } catch (error) {
-      byId('why-list').replaceChildren(make('li', {}, error instanceof Error ? error.message : String(error)));
+      byId('why-list').replaceChildren(make('li', {}, reasonOf(error)));
     }
   }
 
@@ -95,19 +96,19 @@ export class WhyPanel {
     const kinds = (Object.keys(WORDS) as RemedyKind[]).filter((kind) => remedies[kind].safe.length > 0);
     const rows = kinds.map((kind) => this.row(kind, remedies[kind]));
     if (remedies.strength_factor !== null) {
-      rows.push(make('li', {}, make('span', {}, `Connections ${remedies.strength_factor.toFixed(2)} times as strong would hold.`)));
+      rows.push(make('li', {}, make('span', {}, t('Connections {0} times as strong would hold.', digits(remedies.strength_factor.toFixed(2))))));
     }
     const tried = (Object.keys(WORDS) as RemedyKind[]).reduce((sum, kind) => sum + remedies[kind].tried, 0);
-    const none = make('li', {}, `None of ${tried} single changes makes it hold.`);
+    const none = make('li', {}, t('None of {0} single changes makes it hold.', tried));
     byId('why-list').replaceChildren(...(rows.length > 0 ? rows : [none]));
   }
 
   private row(kind: RemedyKind, { safe, tried }: RemedyList): HTMLElement {
     const [{ cell, load_ratio_max: ratio }] = safe;
     const { text, title } = WORDS[kind];
-    const load = ratio === null ? [] : [make('span', { className: 'quiet' }, `load ${shortRatio(ratio)}`)];
-    const note = `${title && `${title}; `}${safe.length} of ${tried} that were tried would do`;
-    const button = make('button', { type: 'button', title: note }, text(cellText(cell)), ...load);
+    const load = ratio === null ? [] : [make('span', { className: 'quiet' }, t('load {0}', shortRatio(ratio)))];
+    const note = `${title && `${t(title)}; `}${t('{0} of {1} that were tried would do', safe.length, tried)}`;
+    const button = make('button', { type: 'button', title: note }, t(text, cellText(cell)), ...load);
     button.dataset.remedy = kind;
     button.onpointerenter = button.onfocus = () => this.preview(kind, cell);
     button.onpointerleave = button.onblur = () => this.preview(kind, undefined);
@@ -130,14 +131,14 @@ export class WhyPanel {
       return;
     }
     if (kind === 'module') {
-      bench.edit('attaching a module that helps', [cell], Role.kExisting);
+      bench.edit(t('attaching a module that helps'), [cell], Role.kExisting);
     } else if (kind === 'fixing') {
-      bench.edit('fixing a module', [cell], Role.kFixed);
+      bench.edit(t('fixing a module'), [cell], Role.kFixed);
     } else if (kind === 'removal') {
       bench.remove([cell]);
     } else {
       const obstacles = withObstacles(bench.robot.obstacles.obstacles, [cell], 'contact', undefined);
-      bench.surround('placing a prop', { obstacles });
+      bench.surround(t('placing a prop'), { obstacles });
     }
   }
 }

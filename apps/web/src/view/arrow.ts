@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-import { BufferGeometry, Float32BufferAttribute } from 'three';
+import { BufferGeometry, Float32BufferAttribute, Quaternion, Vector3 } from 'three';
 
 /** From the origin along x, its tip a little beyond `length`: two crossed blades, seen from every side. */
 export function arrow(length: number): BufferGeometry {
@@ -11,4 +11,14 @@ export function arrow(length: number): BufferGeometry {
   geometry.setAttribute('position', new Float32BufferAttribute(corners, 3));
   geometry.setIndex([...triangles, ...triangles.map((i) => i + outline.length)]);
   return geometry;
+}
+
+const X = new Vector3(1, 0, 0);
+/** Of the tip, beyond the length. */
+const TIP = 0.35;
+
+/** Along a force, its tip where it acts. */
+export function arrowAlong(force: Vector3, length: number, at: Vector3): BufferGeometry {
+  const turn = new Quaternion().setFromUnitVectors(X, force.clone().normalize());
+  return arrow(length).translate(-length - TIP, 0, 0).applyQuaternion(turn).translate(at.x, at.y, at.z);
 }

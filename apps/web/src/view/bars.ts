@@ -13,8 +13,9 @@ export interface Bar {
   middle: Vector3;
   direction: Vector3;
   colour: Rgb;
-  /** In radii of others. */
+  /** In radii and lengths of others. */
   width: number;
+  length: number;
 }
 
 export class Bars {
@@ -34,7 +35,7 @@ export class Bars {
     const [matrix, turn, colour, size] = [new Matrix4(), new Quaternion(), new Color(), new Vector3()];
     bars.forEach((bar, i) => {
       turn.setFromUnitVectors(ALONG, bar.direction);
-      mesh.setMatrixAt(i, matrix.compose(bar.middle, turn, size.set(bar.width, 1, bar.width)));
+      mesh.setMatrixAt(i, matrix.compose(bar.middle, turn, size.set(bar.width, bar.length, bar.width)));
       mesh.setColorAt(i, colour.setHex(hex(bar.colour), SRGBColorSpace));
     });
     mesh.count = bars.length;

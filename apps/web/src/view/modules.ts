@@ -81,10 +81,11 @@ void main() {
 #ifdef SPHERE
   // A square across the line of sight, as large as the sphere is seen.
   vCentre = (modelViewMatrix * vec4(place + motion * exaggeration, 1.0)).xyz;
+  vec3 sight = isOrthographic ? vec3(0.0, 0.0, -1.0) : vCentre;
   float square = dot(vCentre, vCentre);
-  vec3 right = normalize(cross(vCentre, vec3(0.0, 1.0, 0.0)));
-  vec3 up = normalize(cross(right, vCentre));
-  float size = 1.02 * sqrt(square / max(square - 0.25, 0.01));
+  vec3 right = normalize(cross(sight, vec3(0.0, 1.0, 0.0)));
+  vec3 up = normalize(cross(right, sight));
+  float size = 1.02 * (isOrthographic ? 1.0 : sqrt(square / max(square - 0.25, 0.01)));
   vAt = vCentre + size * (position.x * right + position.y * up);
   vTurn = w;
   vFaces = faces;
@@ -319,11 +320,12 @@ vec3 colourOf(Spot spot) {
 
 void main() {
 #ifdef SPHERE
-  vec3 sight = normalize(vAt);
-  float nearest = dot(sight, vCentre);
-  float miss = length(vCentre - sight * nearest);
+  vec3 sight = isOrthographic ? vec3(0.0, 0.0, -1.0) : normalize(vAt);
+  vec3 eye = isOrthographic ? vec3(vAt.xy, 0.0) : vec3(0.0);
+  float nearest = dot(sight, vCentre - eye);
+  float miss = length(vCentre - eye - sight * nearest);
   float soft = max(fwidth(miss), 1e-5);
-  vec3 hit = sight * (nearest - sqrt(max(0.25 - miss * miss, 0.0)));
+  vec3 hit = eye + sight * (nearest - sqrt(max(0.25 - miss * miss, 0.0)));
   vec3 n = (hit - vCentre) * 2.0;
   vec3 world = n * mat3(viewMatrix);
   vec3 body = rotated(world * mat3(modelMatrix), -vTurn);

@@ -36,7 +36,7 @@ void main() {
 
 export class ObstacleView {
   readonly group = new Group();
-  private readonly faces = new Mesh(
+  readonly faces = new Mesh(
     new BufferGeometry(),
     new ShaderMaterial({
       vertexShader: VERTEX,

@@ -12,7 +12,9 @@ varying vec3 vTint;
 void main() {
   vTint = tint;
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
-  gl_PointSize = clamp(size / gl_Position.w, 5.0, 26.0);
+  // As large as they are from where a camera of 32 degrees would see the same.
+  float distance = isOrthographic ? 3.4874 / projectionMatrix[1][1] : gl_Position.w;
+  gl_PointSize = clamp(size / distance, 5.0, 26.0);
 }`;
 
 const FRAGMENT = `

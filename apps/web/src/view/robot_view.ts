@@ -7,7 +7,7 @@ import { mergeGeometries } from 'three/examples/jsm/utils/BufferGeometryUtils.js
 import { LOAD_FIELDS, MOTION_FIELDS, type Answer } from '../core/types';
 import { Role, type Cell } from '../model/cell';
 import type { EditedRobot } from '../model/edited_robot';
-import { CUBIC, type Lattice } from '../model/lattice';
+import { CUBIC, type Lattice, type Place } from '../model/lattice';
 import {
   FIXED, NEUTRAL, UNKNOWN, UNSTABLE, brokenColour, loadColour, loadStep, mix, stepColours, type Rgb, type ScaleName, type Subject,
 } from './colours';
@@ -36,6 +36,12 @@ export const enum FaceCode {
 /** In cells. */
 const CURSOR_SIZE = 1.07;
 const WHITE: Rgb = [255, 255, 255];
+/** From node to node, in lengths of a bar. */
+const WHOLE_BAR = 1 / 0.75;
+/** Of ribbons, in radii of a bar: nothing flows, and most. */
+const RIBBON_WIDTHS = [0.35, 3.2] as const;
+/** Of bars beside a ribbon. */
+const THIN = 0.4;
 const FACE_BASE = 8;
 /** Codes of so many faces stand in one number. */
 const FACES_PER_NUMBER = 6;
@@ -80,6 +86,12 @@ export function moduleLoads(judged: Judged): ModuleLoads {
   return { ratio, isBroken };
 }
 
+/** What flows along a way: connections by index, and the field of their loads that gives the width. */
+export interface Flow {
+  connections: readonly number[];
+  field: number;
+}
+
 /** Draws the robot: modules with what is known of them, ghosts, the cursor, the worst connection. */
 export class RobotView {
   private readonly modules = new ModuleMesh();
@@ -87,6 +99,7 @@ export class RobotView {
   private readonly bars = new Bars();
   /** Loads are shown inside the robot too. */
   private isXray = false;
+  private shownFlow?: Flow;
   /** What is in front of it is not shown. */
   section?: Section;
   private lattice = CUBIC;
@@ -135,7 +148,7 @@ export class RobotView {
     this.loads = judged?.answer.has_loads ? moduleLoads(judged) : undefined;
     const drawn: number[] = [];
     for (let slot = 0; slot < robot.count; ++slot) {
-      const isSeen = isApart || this.isXray || !robot.isHidden(slot) || opens(this.section, robot.placeAt(slot));
+      const isSeen = isApart || this.isXray || this.shownFlow || !robot.isHidden(slot) || opens(this.section, robot.placeAt(slot));
       if (isSeen && !cutsAway(this.section, robot.placeAt(slot))) {
         drawn.push(slot);
       }
@@ -183,13 +196,28 @@ export class RobotView {
   /** Modules that one sees through, with a bar for each connection in the colour of its load, from the next show() on. */
   set xray(isXray: boolean) {
     this.isXray = isXray;
-    this.modules.isSheer = isXray;
+    this.modules.isSheer = isXray || this.shownFlow !== undefined;
+  }
+
+  get xray(): boolean {
+    return this.isXray;
+  }
+
+  /** Ribbons along a way, through sheer modules from the next show() on; other connections are thin. */
+  set flow(flow: Flow | undefined) {
+    this.shownFlow = flow;
+    this.modules.isSheer = this.isXray || flow !== undefined;
+    this.placeBars();
+  }
+
+  get areBarsShown(): boolean {
+    return this.bars.group.visible;
   }
 
   /** Nothing where modules are elsewhere, or the loads are not known or not what is shown. */
   private placeBars(): void {
     const answer = this.judged?.answer;
-    const isShown = this.isXray && answer !== undefined && !this.mechanism && !this.hasOwnColours && !this.losses;
+    const isShown = (this.isXray || this.shownFlow !== undefined) && answer !== undefined && !this.mechanism && !this.hasOwnColours && !this.losses;
     this.bars.group.visible = isShown;
     if (!isShown) {
       return;
@@ -197,6 +225,7 @@ export class RobotView {
     const colours = stepColours(this.scale);
     const isBroken = new Set(answer.broken);
     const areLoaded = answer.has_loads && answer.verdict !== 'unstable';
+    const ribbons = this.ribbonWidths(answer);
     const bars: Bar[] = [];
     for (let i = 0; 3 * i < answer.connections.length; ++i) {
       const [a, b, direction] = answer.connections.subarray(3 * i, 3 * i + 3);
@@ -207,11 +236,21 @@ export class RobotView {
           middle: this.connectionPoint(i),
           direction: new Vector3().fromArray(this.lattice.units[direction]),
           colour: step > 0 ? colours[step - 1] : UNKNOWN,
-          width: breaks ? 2 : 1,
+          width: ribbons.get(i) ?? (this.shownFlow ? THIN : breaks ? 2 : 1),
+          length: ribbons.has(i) ? WHOLE_BAR : 1,
         });
       }
     }
     this.bars.show(bars);
+  }
+
+  /** By connection of the way that is shown. */
+  private ribbonWidths({ loads }: Answer): Map<number, number> {
+    const { connections, field } = this.shownFlow ?? { connections: [], field: 0 };
+    const sizes = connections.map((i) => Math.abs(loads[LOAD_FIELDS * i + field]));
+    const most = Math.max(...sizes, Number.MIN_VALUE);
+    const [least, whole] = RIBBON_WIDTHS;
+    return new Map(connections.map((i, k) => [i, least + (whole - least) * (sizes[k] / most)]));
   }
 
   /** The step of every connection's load, on both of its modules. */
@@ -382,7 +421,7 @@ export class RobotView {
     }
   }
 
-  private colour(role: Role, ratio: number | undefined, isBroken: boolean, isUnstable: boolean): Rgb {
+  private colour(role: Role, ratio: number | undefined, isBroken: boolean, isUnstable: boolean, subject = this.subject): Rgb {
     if (isUnstable) {
       return UNSTABLE;
     }
@@ -392,10 +431,21 @@ export class RobotView {
     if (ratio === undefined || Number.isNaN(ratio)) {
       return UNKNOWN;
     }
-    if (this.subject === 'connections') {
+    if (subject === 'connections') {
       return NEUTRAL;
     }
     return isBroken ? brokenColour(this.scale) : loadColour(this.scale, ratio);
+  }
+
+  /** What of the robot is seen, each module in the colour of its largest load. */
+  solids(): { slot: number; place: Place; colour: Rgb }[] {
+    const { robot, loads, judged } = this;
+    const isUnstable = judged?.answer.verdict === 'unstable';
+    return Array.from(robot ? this.drawn : [], (slot) => {
+      const isBroken = !isUnstable && loads?.isBroken[slot] === 1;
+      const colour = this.ownColour(slot) ?? this.colour(robot!.roleAt(slot), loads?.ratio[slot], isBroken, isUnstable, 'modules');
+      return { slot, place: robot!.placeAt(slot), colour };
+    });
   }
 
   /** Velocities of a collapse in place of displacements, six for each slot, and modules that give way. */

@@ -3,6 +3,7 @@
 import {
   Group,
   MOUSE,
+  OrthographicCamera,
   PerspectiveCamera,
   Quaternion,
   Raycaster,
@@ -33,7 +34,13 @@ export class Stage {
   readonly scene = new Scene();
   /** What topples. */
   readonly robot = new Group();
+  /** What the controls move, whichever projection shows it. */
   readonly camera = new PerspectiveCamera(32, 1, 0.1, 5000);
+  /** Follows the camera where parallels are to stay parallel. */
+  private readonly parallel = new OrthographicCamera();
+  private isParallelWanted = false;
+  /** Half of what was fitted last, in cells. */
+  private reach = 10;
   /** Another one wherever up is another direction. */
   controls!: OrbitControls;
   private readonly renderer: WebGLRenderer;
@@ -89,13 +96,14 @@ export class Stage {
 
   /** Draws now, without waiting for a frame. */
   render(): void {
-    this.renderer.render(this.scene, this.camera);
+    this.renderer.render(this.scene, this.eye());
   }
 
-  /** The picture with so many pixels for each that it has now, until it is drawn again. */
-  picture(scale: number): { canvas: HTMLCanvasElement; ratio: number } {
+  /** The picture with so many pixels for each that it has now, by its pixel ratio and width. */
+  picture(scaleOf: (ratio: number, width: number) => number): { canvas: HTMLCanvasElement; ratio: number } {
     const ratio = this.renderer.getPixelRatio();
     const { clientWidth, clientHeight } = this.canvas;
+    const scale = scaleOf(ratio, clientWidth);
     const copy = document.createElement('canvas');
     this.renderer.setPixelRatio(ratio * scale);
     this.renderer.setSize(clientWidth, clientHeight, false);
@@ -106,6 +114,41 @@ export class Stage {
     this.renderer.setSize(clientWidth, clientHeight, false);
     this.render();
     return { canvas: copy, ratio: ratio * scale };
+  }
+
+  /** Orthographic: equal lengths are equal in the picture, however far away. */
+  get isParallel(): boolean {
+    return this.isParallelWanted;
+  }
+
+  set isParallel(isParallel: boolean) {
+    this.isParallelWanted = isParallel;
+    this.draw();
+  }
+
+  /**
+   * What sees the scene. The orthographic camera shows what the other one does in the plane of its target, so that
+   * turning, panning and zooming are the same; it stands so far back that no module is behind it.
+   */
+  private eye(): PerspectiveCamera | OrthographicCamera {
+    const { camera, parallel } = this;
+    camera.updateMatrixWorld();
+    if (!this.isParallelWanted) {
+      return camera;
+    }
+    const distance = camera.position.distanceTo(this.controls.target);
+    const half = distance * Math.tan((camera.fov * Math.PI) / 360);
+    [parallel.top, parallel.bottom] = [half, -half];
+    [parallel.right, parallel.left] = [half * camera.aspect, -half * camera.aspect];
+    const back = 4 * this.reach;
+    parallel.near = 0;
+    parallel.far = distance + camera.far + back;
+    parallel.view = camera.view;
+    parallel.quaternion.copy(camera.quaternion);
+    parallel.position.set(0, 0, back).applyQuaternion(camera.quaternion).add(camera.position);
+    parallel.updateProjectionMatrix();
+    parallel.updateMatrixWorld();
+    return parallel;
   }
 
   get drawCalls(): number {
@@ -119,13 +162,13 @@ export class Stage {
       (2 * (x - box.left)) / box.width - 1,
       1 - (2 * (y - box.top)) / box.height,
     );
-    this.raycaster.setFromCamera(at, this.camera);
+    this.raycaster.setFromCamera(at, this.eye());
     return this.raycaster.ray;
   }
 
   /** Where a point of the scene is on the canvas, in CSS pixels; undefined behind the camera. */
   project(point: Vector3): { x: number; y: number } | undefined {
-    const at = point.clone().project(this.camera);
+    const at = point.clone().project(this.eye());
     const { clientWidth, clientHeight } = this.canvas;
     return at.z > 1
       ? undefined
@@ -162,6 +205,7 @@ export class Stage {
   fit(low: Place, high: Place, from?: Place): void {
     const middle = new Vector3().fromArray(low.map((value, k) => (value + high[k]) / 2));
     const radius = 0.5 * Math.hypot(...low.map((value, k) => high[k] - value + 1.6));
+    this.reach = radius;
     const half = (this.camera.fov * Math.PI) / 360;
     const narrow = Math.min(half, Math.atan(Math.tan(half) * this.camera.aspect));
     const side = from
@@ -198,7 +242,6 @@ export class Stage {
   /** All of a box of nodes is in the picture. */
   holds(low: Place, high: Place): boolean {
     const { clientWidth, clientHeight } = this.canvas;
-    this.camera.updateMatrixWorld();
     return Array.from({ length: 8 }, (_, corner) =>
       this.project(new Vector3().fromArray(low.map((value, k) => ((corner >> k) & 1 ? high[k] + 0.5 : value - 0.5)))),
     ).every((at) => at && at.x >= 0 && at.x <= clientWidth && at.y >= 0 && at.y <= clientHeight);
