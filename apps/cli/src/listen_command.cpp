@@ -20,13 +20,8 @@ struct ListenArguments {
 
 int run_listen(const ListenArguments& arguments) {
   const Interruption interruption;
-  const auto heard = listen(
-      arguments.devices, arguments.options,
-      [](const std::string& line) {
-        fmt::print("{}\n", line);
-        std::fflush(stdout);
-      },
-      [] { return !Interruption::is_here(); });
+  const auto heard = listen(arguments.devices, arguments.options, &print_at_once,
+                            [] { return !Interruption::is_here(); });
   if (!heard) {
     return fail(heard.error(), arguments.devices.front());
   }
