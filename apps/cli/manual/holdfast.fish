@@ -115,7 +115,7 @@ complete -c holdfast -n __fish_use_subcommand -a order -d 'Find an order in whic
 complete -c holdfast -n '__fish_seen_subcommand_from order' -s h -l help -d 'Print this help message and exit'
 complete -c holdfast -n '__fish_seen_subcommand_from order' -l from -r -F -d 'Structure to begin with, a part of TARGET; else the fixed modules, or one module that the search chooses [not with --continue]'
 complete -c holdfast -n '__fish_seen_subcommand_from order' -l continue -x -d 'Go on with a plan of -o, keeping its last steps as far as they are safe: TARGET is the robot as it is now [not with --from, --strength-needed]'
-complete -c holdfast -n '__fish_seen_subcommand_from order' -l at -x -d 'So many steps of the plan are done, and TARGET is the robot that it was made for'
+complete -c holdfast -n '__fish_seen_subcommand_from order' -l at -x -d 'The number of steps of the plan that are done; TARGET then is the robot that it was made for'
 complete -c holdfast -n '__fish_seen_subcommand_from order' -l reach -x -a 'free line surface' -d 'How a module gets to its cell: free, any cell; line, a straight way in; surface, sliding along the robot from --source [default: free]'
 complete -c holdfast -n '__fish_seen_subcommand_from order' -l source -x -d 'Where modules come from along the surface'
 complete -c holdfast -n '__fish_seen_subcommand_from order' -l avoid -x -d 'A cell, or a box of cells, that bars ways of --reach line and surface and carries nothing; may be given several times'

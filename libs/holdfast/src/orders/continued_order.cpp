@@ -44,8 +44,11 @@ plan::Judgement judged_of(const plan::StepJudgement& step, bool has_parts) {
   return worst;
 }
 
+/// Whether all of a step is safe, in one piece, as states of an order are.
 bool is_safe_step(const plan::StepJudgement& step) {
-  return std::ranges::all_of(step.stages, &plan::StageJudgement::is_safe);
+  return std::ranges::all_of(step.stages, [](const plan::StageJudgement& stage) {
+    return stage.is_safe() && stage.piece_count == 1;
+  });
 }
 
 /// One search for one continuation.
@@ -346,7 +349,7 @@ base::Result<io::OrderReport> Continuation::search() {
        first += 1 + tried_count / kTriedOneByOne) {
     ++tried_count;
     auto found = seek(first);
-    if (!found && found.error().where == plan::kAtStart) {
+    if (!found && !rest_.is_reversed && found.error().where == plan::kAtStart) {
       return found.error();
     }
     if (found && found.value().order.outcome == plan::OrderOutcome::kFound) {
