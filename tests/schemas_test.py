@@ -255,6 +255,7 @@ def commands(scenarios, tests):
     yield ['next', 'cube.json', '--seconds', '0']
     yield ['order', 'cube.json', '--reverse']
     yield ['order', 'cube.json', '--reach', 'line', '--from', 'row.json']
+    yield ['order', 'row.json', '--continue', 'row_plan.json', '--at', '1']
     yield ['order', 'cube.json', '--parallel', 'all', '--reverse']
     yield ['order', f'{plan}/pair.json', '--parallel', '3']
     yield ['order', f'{plan}/pair.json', '--strength-needed', '--scatter', '10%', '--lose-one']
@@ -278,6 +279,16 @@ def commands(scenarios, tests):
     yield ['robots', 'rofi']
 
 
+def streams(plan):
+    """Runs whose lines are looked at."""
+    yield ['order', 'cube.json', '--parallel', '20']
+    yield ['order', 'cube.json', '--reverse', '--seconds', '0']
+    yield ['order', 'row.json', '--reverse']
+    yield ['order', f'{plan}/pair.json']
+    yield ['move', f'{plan}/around_arm_from.json', f'{plan}/around_arm_to.json', '--within',
+           '-9,0,-9:9,0,9']
+
+
 def main(program, repository, image=None):
     schemas = Schemas(repository / 'docs/schemas')
     runs = list(commands(repository / 'scenarios', repository / 'tests'))
@@ -289,11 +300,18 @@ def main(program, repository, image=None):
         def run(*arguments):
             return subprocess.run([program, *arguments], cwd=folder, capture_output=True, text=True)
 
+        def look_at(schema, shown, value):
+            nonlocal places, faults
+            found = schemas.check(schema, value)
+            places |= found.places
+            faults += [f'{shown}: {fault}' for fault in found.faults[:3]]
+
         for name, robot in ROBOTS.items():
             pathlib.Path(folder, name + '.json').write_text(json.dumps(robot))
         run('generate', 'cube', '7', '-o', 'cube.json')
         run('generate', 'tower', '7000', '-o', 'slender.json')
         run('generate', 'cube', '15', '-o', 'large.json')
+        run('order', 'row.json', '-o', 'row_plan.json')
         run('move', f'{repository}/scenarios/plan/around_arm_from.json',
             f'{repository}/scenarios/plan/around_arm_to.json', '--geometry-only', '-o',
             'walk_to_topple.json')
@@ -304,9 +322,10 @@ def main(program, repository, image=None):
             if not done.stdout:
                 faults.append(f'{shown}: no report: {done.stderr.strip()}')
                 continue
-            found = schemas.check(f'{command[0]}.schema.json#', json.loads(done.stdout))
-            places |= found.places
-            faults += [f'{shown}: {fault}' for fault in found.faults[:3]]
+            look_at(f'{command[0]}.schema.json#', shown, json.loads(done.stdout))
+        for command in streams(repository / 'scenarios/plan'):
+            for line in run(*command, '--stream').stdout.splitlines() or ['']:
+                look_at('stream.schema.json#', ' '.join(command), json.loads(line or 'null'))
     wanted = {place for path in sorted(schemas.folder.iterdir())
               if (image or path.name != 'emulate.schema.json') and path.name not in OF_DEVICES
               for place in places_of(path.name, schemas.file(path.name))}

@@ -58,6 +58,21 @@ expect_line kept.json '^old$'
 expect_refusal 65 'across the border' row.json next.json --verify none.json
 expect_refusal 65 'a report with a certificate' "$from" "$to" --verify report.json
 
+# Steps as lines: standard output has nothing else, and they are those of the plan.
+expect_exit 0 move "$from" "$to" "$plane" --stream -o streamed.json
+python3 - <<'PYTHON' || fault 'lines are not the plan'
+import json
+lines = [json.loads(line) for line in open('out')]
+steps = [step['move'][0] for step in json.load(open('streamed.json'))['steps']]
+assert [(line['from'], line['to']) for line in lines[:-1]] == [(s['from'], s['to']) for s in steps]
+assert lines[-1]['result'] == 'found' and lines[-1]['steps'] == len(steps) == 9
+PYTHON
+expect_exit 1 move row.json next.json $layer --stream
+python3 -c 'import json; line, = open("out"); assert json.loads(line)["result"] == "none"' ||
+  fault 'lines where there is no plan'
+expect_exit 64 move "$from" "$to" --stream --json -
+expect_exit 64 move "$from" "$to" --stream --geometry-only
+
 # Nothing to do: the file is FROM, without steps.
 expect_exit 0 move row.json row.json -o same.json
 expect_exit 0 check same.json

@@ -104,4 +104,58 @@ expect_exit 64 order ball.json --parallel 2 --group 2
 expect_exit 64 order ball.json --parallel 2 --strength-needed
 expect_exit 65 order ball.json --parallel 2 --lose-one
 
+# Steps as lines: standard output has nothing else, and they are the order.
+expect_exit 0 order ball.json --parallel 4 --stream --json streamed.json
+python3 - <<'PYTHON' || fault 'lines are not the order'
+import json
+lines = [json.loads(line) for line in open('out')]
+report = json.load(open('streamed.json'))
+assert lines[0]['start'] == report['start']
+assert [line['attach'] for line in lines[1:-1]] == [step['attach'] for step in report['way'][1:]]
+assert lines[-1]['result'] == 'found' and lines[-1]['steps'] == len(lines) - 2
+PYTHON
+expect_exit 2 order portal.json --seconds 0 --stream
+python3 -c 'import json; line, = open("out"); line = json.loads(line); line.pop("seconds")
+assert line == {"result": "not-found", "steps": 0, "reason": "time"}, line' || fault 'no steps'
+for clash in '--json -' '-o -' '--csv -' '--certificate -' '--strength-needed'; do
+  # shellcheck disable=SC2086
+  expect_exit 64 order ball.json --stream $clash
+done
+
+# A plan that is gone on with.
+expect_exit 0 order ball.json -o plan.json
+expect_exit 0 order ball.json --continue plan.json --at 12 -o rest.json --json rest_report.json
+expect_line rest_report.json '"kept": 30'
+python3 -c 'import json; r = json.load(open("rest_report.json"))
+assert r["load_ratio_max"] <= r["load_ratio_bound"]' || fault 'a state exceeds the bound of all'
+expect_exit 0 steps rest.json
+# As it is: the module of the sixth step is missing after ten.
+python3 - <<'PYTHON'
+import json
+plan = json.load(open('plan.json'))
+steps = [step['attach'][0] for step in plan.pop('steps')]
+plan['modules'] += steps[:5] + steps[6:10]
+json.dump(plan, open('now.json', 'w'))
+plan['modules'].append([50, 0, 0])
+json.dump(plan, open('far.json', 'w'))
+PYTHON
+expect_exit 0 order now.json --continue plan.json -o rest.json --stream
+expect_exit 0 steps rest.json
+expect_exit 65 order ball.json --continue plan.json --at 43
+expect_line err 'plan.json: it has 42 steps, of which 43 cannot be done'
+expect_exit 65 order tower.json --continue plan.json --at 1
+expect_line err 'plan.json: it is a plan of another robot: they differ in '
+cp ball.json idle_plan.json
+expect_exit 65 order ball.json --continue idle_plan.json
+expect_line err 'idle_plan.json: it has no steps; expected a plan'
+expect_exit 65 order far.json --continue plan.json
+expect_exit 65 order now.json --continue plan.json --reverse
+expect_line err 'it attaches modules, which --reverse cannot go on with'
+expect_exit 64 order ball.json --at 3
+expect_exit 64 order ball.json --continue plan.json --from now.json
+expect_exit 64 order ball.json --continue plan.json -o plan.json
+expect_exit 0 order ball.json --reverse -o apart.json
+expect_exit 0 order ball.json --continue apart.json --at 7 -o left.json
+expect_exit 0 steps left.json
+
 echo "order: all as expected"

@@ -9,6 +9,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <initializer_list>
@@ -203,6 +204,19 @@ inline void note_idle_connections(const std::string& choice,
                "holdfast: note: --connections has no effect on the text; it chooses what the "
                "files of connections list, such as that of --json\n");
   }
+}
+
+/// The option with which steps go to standard output, a line of JSON each.
+inline CLI::Option* add_stream(CLI::App& command, bool& is_streamed) {
+  return command.add_flag("--stream", is_streamed,
+                          "Write every step as a line of JSON to standard output as soon as it is "
+                          "certified and will not be taken back, then a line with the result");
+}
+
+/// Prints a line that somebody waits for.
+inline void print_at_once(const std::string& line) {
+  fmt::print("{}\n", line);
+  std::fflush(stdout);
 }
 
 /// A structure with steps as the ending of its file asks: VisibleSim XML or holdfast JSON.

@@ -23,10 +23,7 @@ int run_listen(const ListenArguments& arguments) {
   const Interruption interruption;
   const auto heard = listen(
       arguments.devices, arguments.options,
-      [&](const HeardLine& line) {
-        fmt::print("{}\n", arguments.is_json ? line.json : line.text);
-        std::fflush(stdout);
-      },
+      [&](const HeardLine& line) { print_at_once(arguments.is_json ? line.json : line.text); },
       [] { return !Interruption::is_here(); });
   if (!heard) {
     return fail(heard.error(), arguments.devices.front());

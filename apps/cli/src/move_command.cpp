@@ -31,6 +31,7 @@ struct MoveArguments {
   double seconds = 300;
   int thread_count = 0;
   bool is_quiet = false;
+  bool is_streamed = false;
   std::string steps;
   std::string json;
   std::string csv;
@@ -42,7 +43,8 @@ struct MoveArguments {
     return {{"--output", steps, FileFormat::kPlan},
             {"--json", json, FileFormat::kJson},
             {"--csv", csv, FileFormat::kCsv},
-            {"--html", html, FileFormat::kHtml}};
+            {"--html", html, FileFormat::kHtml},
+            {"--stream", is_streamed ? "-" : ""}};
   }
 };
 
@@ -194,6 +196,10 @@ int run(const MoveArguments& options) {
   io::MoveReport report = std::move(sought).value();
   report.origin = options.reading.origin(options.start);
   report.origin.target = target_file(options);
+  if (options.is_streamed) {
+    fmt::print("{}", io::move_lines(report));
+    std::fflush(stdout);
+  }
   const auto failures = report.plan.outcome == plan::MoveOutcome::kFound
                             ? find_plan_failures(io::move_steps(report), options.failures,
                                                  options.thread_count, progress)
@@ -257,6 +263,7 @@ Command add_move(CLI::App& app) {
                    "Verify the certificate in an earlier JSON report of the same FROM, TO "
                    "and ways to go")
       ->type_name("FILE");
+  add_stream(*command, options->is_streamed)->excludes("--geometry-only")->excludes("--verify");
   add_plan_failure_options(*command, options->failures);
   add_reading(*command, options->reading);
   add_safety_factor(*command, options->reading);

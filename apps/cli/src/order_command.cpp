@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <array>
 #include <charconv>
 #include <filesystem>
 #include <limits>
@@ -26,6 +25,8 @@ struct OrderArguments {
   Reading reading;
   std::string target;
   std::string start;
+  std::string plan;                            ///< That is gone on with,
+  std::optional<std::size_t> done_count = {};  ///< so many steps of which are done.
   std::string reach = "free";
   std::string source;
   std::vector<std::string> avoid;
@@ -41,6 +42,7 @@ struct OrderArguments {
   double help_seconds = 10;
   int thread_count = 0;
   bool is_quiet = false;
+  bool is_streamed = false;
   std::string steps;
   std::string json;
   std::string csv;
@@ -53,7 +55,8 @@ struct OrderArguments {
             {"--json", json, FileFormat::kJson},
             {"--csv", csv, FileFormat::kCsv},
             {"--html", html, FileFormat::kHtml},
-            {"--certificate", certificate, FileFormat::kJson}};
+            {"--certificate", certificate, FileFormat::kJson},
+            {"--stream", is_streamed ? "-" : ""}};
   }
 };
 
@@ -132,6 +135,18 @@ base::Result<std::vector<base::Cell>> start_cells(const OrderArguments& options,
   return cells;
 }
 
+/// Goes on with a plan. An error of it has no further place, and is printed with its name.
+base::Result<io::OrderReport> go_on(const OrderArguments& options, const io::Document& file,
+                                    const OrderRequest& request) {
+  const auto plan = read_with_notes(options.plan, options.reading);
+  if (!plan) {
+    base::Error error = plan.error();
+    error.where = kAtPlan;
+    return error;
+  }
+  return continue_order(file, plan.value().document, options.done_count, request);
+}
+
 OrderRequest request_of(const OrderArguments& options, Progress& progress) {
   OrderRequest request{.group_size = options.group_size,
                        .parallel_max = parallel_of_text(options.parallel).value(),
@@ -159,6 +174,9 @@ OrderRequest request_of(const OrderArguments& options, Progress& progress) {
                          host::counted(here, "module"), furthest);
     });
   };
+  if (options.is_streamed) {
+    request.stream = &print_at_once;
+  }
   return request;
 }
 
@@ -235,9 +253,24 @@ base::Result<PlanFailureAnswer> failures_of(const OrderArguments& options,
                : steps.error();
 }
 
+/// Says what is wrong, and with which of the files.
+int fail_in_file(const OrderArguments& options, base::Error error) {
+  const bool is_start = error.where == plan::kAtStart;
+  const bool is_plan = error.where == kAtPlan;
+  error.where = is_start || is_plan ? "" : error.where;
+  return fail(error, is_plan                              ? options.plan
+                     : is_start && !options.start.empty() ? options.start
+                                                          : options.target);
+}
+
 int run(const OrderArguments& options) {
-  const std::array<std::string, 2> inputs = {options.target, options.start};
-  refuse_clashes({inputs.data(), options.start.empty() ? 1U : 2U}, options.outputs());
+  std::vector<std::string> inputs = {options.target};
+  for (const std::string& more : {options.start, options.plan}) {
+    if (!more.empty()) {
+      inputs.push_back(more);
+    }
+  }
+  refuse_clashes(inputs, options.outputs());
   if ((options.reach == "surface") != !options.source.empty()) {
     throw UsageError(options.source.empty() ? "--reach surface requires --source CELL"
                                             : "--source requires --reach surface");
@@ -262,6 +295,9 @@ int run(const OrderArguments& options) {
   More more;
   auto sought = [&]() -> base::Result<io::OrderReport> {
     const Interruption interruption;
+    if (!options.plan.empty()) {
+      return go_on(options, read.value().document, request);
+    }
     if (!options.is_strength_wanted) {
       return seek_order(read.value().document, request);
     }
@@ -273,13 +309,13 @@ int run(const OrderArguments& options) {
     return std::move(needed.value().report);
   }();
   if (!sought) {
-    base::Error error = sought.error();
-    const bool is_start = error.where == plan::kAtStart;
-    error.where = is_start ? "" : error.where;
-    return fail(error, is_start && !options.start.empty() ? options.start : options.target);
+    return fail_in_file(options, sought.error());
   }
   io::OrderReport report = std::move(sought).value();
   report.origin = options.reading.origin(options.target);
+  if (options.is_streamed) {
+    print_at_once(io::order_last_line(report));
+  }
   auto failures = base::Result<PlanFailureAnswer>(PlanFailureAnswer());
   if (report.result.order.outcome == plan::OrderOutcome::kFound) {
     failures = failures_of(options, report, progress);
@@ -346,6 +382,24 @@ void add_ways(CLI::App& command, OrderArguments& options) {
                    "Take the robot apart, from the target to the start");
 }
 
+void add_continuation(CLI::App& command, OrderArguments& options) {
+  CLI::Option* plan =
+      command
+          .add_option("--continue", options.plan,
+                      "Go on with a plan of -o, keeping its last steps as far as they are safe: "
+                      "TARGET is the robot as it is now")
+          ->type_name("PLAN")
+          ->excludes("--from")
+          ->excludes("--pieces");
+  command
+      .add_option("--at", options.done_count,
+                  "The number of steps of the plan that are done; TARGET then is the robot that it "
+                  "was made for")
+      ->type_name("K")
+      ->check(CLI::Range(0, 1000000000))
+      ->needs(plan);
+}
+
 void add_limits(CLI::App& command, OrderArguments& options) {
   add_seed(command, options.seed, "Random seed; one seed always gives the same result");
   command.add_flag(
@@ -383,6 +437,7 @@ Command add_order(CLI::App& app) {
           "Structure to begin with, a part of TARGET; else the fixed modules, or one module "
           "that the search chooses")
       ->type_name("START");
+  add_continuation(*command, *options);
   add_ways(*command, *options);
   add_limits(*command, *options);
   add_output(
@@ -403,7 +458,9 @@ Command add_order(CLI::App& app) {
       ->add_flag("--strength-needed", options->is_strength_wanted,
                  "Find the least factor of all strengths with which there is a safe order")
       ->excludes("--certificate")
+      ->excludes("--continue")
       ->excludes("--parallel");
+  add_stream(*command, options->is_streamed)->excludes("--strength-needed");
   add_plan_failure_options(*command, options->failures);
   add_reading(*command, options->reading);
   add_safety_factor(*command, options->reading);
@@ -412,6 +469,10 @@ Command add_order(CLI::App& app) {
           {.examples = {{"order arch.json", "in which order can it be built?"},
                         {"order arch.json --from pier.json -o plan.json",
                          "go on from what stands already, and keep the order"},
+                        {"order arch.json --continue plan.json --at 12 -o rest.json",
+                         "go on with a plan of which 12 steps are done"},
+                        {"order now.json --continue plan.json -o rest.json",
+                         "go on from the robot as it is, after a fault"},
                         {"order arch.json --reverse", "take it apart"},
                         {"order arch.json --reach line", "modules come straight in"},
                         {"order arch.json --parallel 4",

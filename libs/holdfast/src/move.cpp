@@ -89,6 +89,7 @@ base::Result<io::MoveReport> seek_moves(const io::Document& start_stated,
   }
   io::MoveReport report{
       .start = start, .task = std::move(task).value(), .plan = std::move(plan).value()};
+  report.is_interrupted = request.is_interrupted && request.is_interrupted();
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return report;
 }

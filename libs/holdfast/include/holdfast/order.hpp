@@ -42,6 +42,9 @@ struct OrderRequest {
   /// its answer is what has been found by then.
   std::function<bool()> is_interrupted = {};
   std::function<void(std::size_t states, std::size_t grown, std::size_t shrunk)> progress = {};
+  /// Called with a line of JSON (io::order_step_line) for the start of an order that is found and
+  /// for each of its steps, as soon as it is certified and will not be taken back.
+  std::function<void(const std::string& line)> stream = {};
 };
 
 /// A page with the report for people, and the steps with their pictures as steps_html() has them.
@@ -52,6 +55,21 @@ std::string order_html(const io::OrderReport& report, std::string_view more = {}
 /// Seeks an order for all modules of a document, existing or planned. Errors: those of
 /// io::make_spec() and plan::find_robot_order().
 base::Result<io::OrderReport> seek_order(const io::Document& target, const OrderRequest& request);
+
+/// The place of an error that is that of the plan which is gone on with.
+inline constexpr const char* kAtPlan = "plan";
+
+/// Goes on with an order's plan, the structure of io::order_steps(). `done_count` of its steps are
+/// done, and `file` is the robot that it was made for; or without a count `file` is the robot as it
+/// is now. The last steps of the plan, as many as are safe and have a way one after another, are
+/// kept where an order is found that leads to them (io::OrderReport::kept_count), else the rest is
+/// an order anew. Modules that are there already, or gone, are left out of the steps. The start of
+/// the request counts for nothing. Errors: those of seek_order(); the plan has no steps, or does
+/// else than attach or detach, or is that of another robot, or has fewer steps, or its steps do not
+/// go with the groups of the request (then `where` is kAtPlan).
+base::Result<io::OrderReport> continue_order(const io::Document& file, const io::Document& plan,
+                                             std::optional<std::size_t> done_count,
+                                             const OrderRequest& request);
 
 /// The least factor of all strengths with which there is a safe order: the bottleneck of all ways
 /// from the start to the whole. It lies between `none`, with which it is proved that there is none,

@@ -181,20 +181,20 @@ base::Result<NamedOrderCertificate> CertificateReader::read() {
   return NamedOrderCertificate{std::move(name_), std::move(certificate_)};
 }
 
-/// Makes the modules of the planned step existing ones, with what they have of their own.
+/// Makes the modules of all planned steps existing ones, with what they have of their own.
 void gather_modules(Document& document) {
-  const std::size_t existing_count = document.modules.size();
-  if (!document.steps.empty()) {
-    for (const PlannedEntry& planned : document.steps.front()) {
+  std::vector<std::size_t> first_of_step = {0};
+  for (const Step& step : document.steps) {
+    first_of_step.push_back(document.modules.size());
+    for (const PlannedEntry& planned : step) {
       document.modules.push_back({.cell = planned.cell,
                                   .is_fixed = false,
                                   .color = planned.color,
                                   .attributes = planned.attributes});
     }
   }
-  std::erase_if(document.extension.own, [](const OwnParameters& own) { return own.step > 1; });
   for (OwnParameters& own : document.extension.own) {
-    own.module += own.step == 1 ? existing_count : 0;
+    own.module += first_of_step[own.step];
     own.step = 0;
   }
   document.steps.clear();
@@ -278,6 +278,22 @@ base::Result<model::RobotSpec> order_target(const Document& document) {
     return target;
   }
   return spec;
+}
+
+Document with_all_modules(Document document) {
+  gather_modules(document);
+  for (const model::Step& step : std::exchange(document.extension.plan, {})) {
+    for (const base::Cell& cell : step.attach) {
+      document.modules.push_back({.cell = cell, .is_fixed = false, .color = {}, .attributes = {}});
+    }
+  }
+  return document;
+}
+
+Document without_modules(Document document, std::vector<base::Cell> cells) {
+  std::ranges::sort(cells);
+  leave_out(document, cells);
+  return document;
 }
 
 std::string write_order_certificate(const Document& target,

@@ -241,6 +241,32 @@ std::string move_text(const MoveReport& report) {
                             host::counted(plan.state_count, "move"), report.seconds);
 }
 
+std::string move_lines(const MoveReport& report) {
+  const plan::MovePlan& plan = report.plan;
+  const bool is_found = plan.outcome == MoveOutcome::kFound;
+  const std::size_t count = is_found ? plan.steps.size() : 0;
+  std::string text;
+  for (std::size_t i = 0; i < count; ++i) {
+    const model::Move& move = plan.steps[i].moves.front();
+    const plan::Judgement worst = worst_of(plan.judgement->steps[i]);
+    text += object({member("from", json_text(move.from)), member("to", json_text(move.to)),
+                    member("carrier", move.carrier ? json_text(*move.carrier) : "null"),
+                    member("load_ratio_max", json_text(worst.load_ratio_max)),
+                    member("margin_mm", json_text(worst.margin_mm))}) +
+            "\n";
+  }
+  const std::string why = plan.undecided_count > 0 ? "undecided"
+                          : report.is_interrupted  ? "interrupt"
+                                                   : "time";
+  const bool is_open = plan.outcome == MoveOutcome::kNotFound;
+  return text +
+         object({member("result", json_text(std::string(plan::name(plan.outcome)))),
+                 member("steps", fmt::format("{}", count)),
+                 member("reason", is_open ? json_text(why) : "null"),
+                 member("seconds", json_text(report.seconds))}) +
+         "\n";
+}
+
 Document move_steps(const MoveReport& report) {
   Document document = report.start;
   document.known_answer.reset();

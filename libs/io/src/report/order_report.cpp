@@ -28,6 +28,15 @@ std::vector<base::Cell> cells_of(const OrderReport& report,
   return cells;
 }
 
+/// A way from one state to the next, or the first state, and what is known of it.
+std::string state_text(std::string_view key, const std::vector<base::Cell>& cells,
+                       const plan::Judgement& judged) {
+  return object({member(key, json_text(cells)),
+                 member(judged.is_bound ? "load_ratio_bound" : "load_ratio_max",
+                        json_text(judged.load_ratio_max)),
+                 member("margin_mm", json_text(judged.margin_mm))});
+}
+
 /// Every state on the way, in its order, with what led to it.
 Items way_items(const OrderReport& report) {
   const plan::Order& order = report.result.order;
@@ -38,11 +47,8 @@ Items way_items(const OrderReport& report) {
     const std::size_t step = report.is_reversed ? k : k - 1;
     const std::vector<plan::Element> none;
     const auto& group = i == 0 ? none : order.steps[step];
-    items.push_back(object(
-        {member(report.is_reversed ? "detach" : "attach", json_text(cells_of(report, group))),
-         member(order.judgements[k].is_bound ? "load_ratio_bound" : "load_ratio_max",
-                json_text(order.judgements[k].load_ratio_max)),
-         member("margin_mm", json_text(order.judgements[k].margin_mm))}));
+    items.push_back(state_text(report.is_reversed ? "detach" : "attach", cells_of(report, group),
+                               order.judgements[k]));
   }
   return items;
 }
@@ -166,6 +172,14 @@ std::string found_words(const OrderReport& report) {
       host::counted(report.result.step_count_least.value_or(0), "step"));
 }
 
+/// Says how much of a plan that is gone on with is in the order.
+std::string kept_words(const OrderReport& report) {
+  return report.kept_count ? fmt::format("  kept        the last {} of the plan, after {} new\n",
+                                         host::counted(*report.kept_count, "step"),
+                                         report.result.order.steps.size() - *report.kept_count)
+                           : "";
+}
+
 std::string parallel_text(const OrderReport& report) {
   const auto& least = report.result.step_count_least;
   const std::size_t most = report.task.parallel_max;
@@ -226,8 +240,30 @@ std::string order_json(const OrderReport& report, const std::vector<std::string>
                        member("help", help_text(report)),
                        member("certificate", certificate)};
   items.insert(items.end(), found.begin(), found.end());
+  if (report.kept_count) {
+    items.push_back(member("kept", fmt::format("{}", *report.kept_count)));
+  }
   items.insert(items.end(), more.begin(), more.end());
   return lines('{', items, '}', 0) + "\n";
+}
+
+std::string order_step_line(const OrderReport& report, std::size_t number, const plan::Batch& step,
+                            const plan::Judgement& judged) {
+  const std::string_view key = number == 0 ? "start" : report.is_reversed ? "detach" : "attach";
+  return state_text(key, cells_of(report, step), judged);
+}
+
+std::string order_last_line(const OrderReport& report) {
+  const plan::Order& order = report.result.order;
+  const bool is_found = order.outcome == OrderOutcome::kFound;
+  const bool is_open = order.outcome == OrderOutcome::kNotFound;
+  const std::string why = order.undecided_count > 0 ? "undecided"
+                          : report.is_interrupted   ? "interrupt"
+                                                    : "time";
+  return object({member("result", json_text(std::string(name(order.outcome)))),
+                 member("steps", fmt::format("{}", is_found ? order.steps.size() : 0)),
+                 member("reason", is_open ? json_text(why) : "null"),
+                 member("seconds", json_text(report.seconds))});
 }
 
 std::string order_csv(const OrderReport& report) {
@@ -267,7 +303,7 @@ std::string order_text(const OrderReport& report) {
                                   : " that keeps the robot in one piece\n") +
            none_words(report) + help_words(report) + examined;
   }
-  std::string text = found_words(report);
+  std::string text = found_words(report) + kept_words(report);
   text += load_ratio_words(report.result);
   if (report.result.margin_min_mm) {
     text += fmt::format("  margin      {} mm at least on the way\n",

@@ -118,7 +118,7 @@ void RobotGrowth::move_to(const ElementSet& state) {
   }
 }
 
-/// By module: whether others hang on it. In pieces what is supported is connected through the
+/// Whether others hang on a module, by module. In pieces what is supported is connected through the
 /// ground, a row of further nodes, one for each module that is.
 std::vector<bool> RobotGrowth::needed_in(const ElementSet& state) const {
   const std::size_t degree = target_.connected()[0].size();

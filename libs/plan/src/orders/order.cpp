@@ -279,21 +279,6 @@ void raise(std::optional<double>& largest, double value) {
   largest = std::max(largest.value_or(value), value);
 }
 
-void take_extremes(RobotOrder& result) {
-  for (const Judgement& judged : result.order.judgements) {
-    if (judged.load_ratio_high) {
-      raise(result.load_ratio_bound, *judged.load_ratio_high);
-    }
-    if (judged.load_ratio_max && !judged.is_bound) {
-      raise(result.load_ratio_max, *judged.load_ratio_max);
-    }
-    if (judged.margin_mm) {
-      result.margin_min_mm =
-          std::min(result.margin_min_mm.value_or(*judged.margin_mm), *judged.margin_mm);
-    }
-  }
-}
-
 }  // namespace
 
 base::Result<RobotOrder> find_robot_order(const OrderTask& task, const RobotOrderOptions& options) {
@@ -324,11 +309,15 @@ base::Result<RobotOrder> find_robot_order(const OrderTask& task, const RobotOrde
     result.order.is_apart = steps_apart(made.target, result.order);
   }
   const bool is_parallel = task.parallel_max > 1;
+  const bool is_told_on_the_way = is_parallel && options.told_end == Sense::kGrowing;
   if (is_parallel && result.order.outcome == OrderOutcome::kFound) {
     TimeSteps steps(task, made.target, options, patience);
     steps.replace(result.order);
     result.load_ratio_max = steps.solved_ratio();
     result.step_count_least = step_count_least(made.target, result.order.start, task.parallel_max);
+  }
+  if (options.certified && !is_told_on_the_way && result.order.outcome == OrderOutcome::kFound) {
+    tell_steps(result.order, options.told_end, options.certified);
   }
   if (options.is_exact && !is_parallel) {
     CertifiedStates(growth, result.order, patience).solve([&](std::size_t module_count) {
@@ -343,6 +332,35 @@ base::Result<RobotOrder> find_robot_order(const OrderTask& task, const RobotOrde
     result.order.closure.reset();
   }
   return result;
+}
+
+void take_extremes(RobotOrder& result) {
+  for (const Judgement& judged : result.order.judgements) {
+    if (judged.load_ratio_high) {
+      raise(result.load_ratio_bound, *judged.load_ratio_high);
+    }
+    if (judged.load_ratio_max && !judged.is_bound) {
+      raise(result.load_ratio_max, *judged.load_ratio_max);
+    }
+    if (judged.margin_mm) {
+      result.margin_min_mm =
+          std::min(result.margin_min_mm.value_or(*judged.margin_mm), *judged.margin_mm);
+    }
+  }
+}
+
+void tell_steps(const Order& order, Sense told_end, const StepListener& certified) {
+  const std::size_t count = order.steps.size();
+  const bool is_apart = told_end == Sense::kShrinking;
+  Batch first = order.start.elements();
+  for (std::size_t i = 0; is_apart && i < count; ++i) {
+    first.insert(first.end(), order.steps[i].begin(), order.steps[i].end());
+  }
+  certified(first, order.judgements[is_apart ? count : 0]);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t step = is_apart ? count - 1 - i : i;
+    certified(order.steps[step], order.judgements[is_apart ? step : step + 1]);
+  }
 }
 
 base::Result<CertificateCheck> verify(const OrderCertificate& certificate, int thread_count) {

@@ -332,17 +332,34 @@ void TimeSteps::replace(Order& order) {
   const bool is_near =
       task_.rule.reach != Reach::kFree && task_.parallel_max < order_.size() / kWindowOfWays;
   window_ = is_near ? kWindowOfWays * task_.parallel_max : std::max<std::size_t>(1, order_.size());
+  if (is_told()) {
+    options_.certified(state_.elements(), order.judgements.front());
+  }
   while (state_.size() < target_.modules().size()) {
     if (patience_.is_over()) {
       finish();
       break;
     }
     step();
+    tell_certain(mark_.step_count);
     if (options_.progress) {
       options_.progress(order.state_count + state_count_, state_.size(), state_.size());
     }
   }
+  tell_certain(steps_.size());
   tell(order);
+}
+
+bool TimeSteps::is_told() const {
+  return options_.certified && options_.told_end == Sense::kGrowing;
+}
+
+/// Tells the steps up to so many. Those up to the mark are never taken back, and no others are
+/// certain before the end.
+void TimeSteps::tell_certain(std::size_t count) {
+  for (; is_told() && told_count_ < count; ++told_count_) {
+    options_.certified(steps_[told_count_].batch, steps_[told_count_].judgement);
+  }
 }
 
 void TimeSteps::tell(Order& order) {

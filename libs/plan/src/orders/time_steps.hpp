@@ -66,6 +66,8 @@ class TimeSteps {
   void go_back();
   void finish();
   verdict::Assessment solve(const ElementSet& state);
+  bool is_told() const;
+  void tell_certain(std::size_t count);
   void tell(Order& order);
 
   const OrderTask& task_;
@@ -89,6 +91,7 @@ class TimeSteps {
   std::size_t place_ = 0;  ///< The first of the order that is not there.
   std::optional<verdict::Assessment> solved_;
   std::vector<Found> steps_;
+  std::size_t told_count_ = 0;  ///< Of these, as RobotOrderOptions::certified says.
   std::optional<double> solved_ratio_;
   std::size_t state_count_ = 0;
 };

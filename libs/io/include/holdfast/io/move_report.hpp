@@ -20,6 +20,7 @@ struct MoveReport {
   plan::MoveTask task;
   plan::MovePlan plan = {};
   double seconds = 0;
+  bool is_interrupted = false;  ///< The search was ended from outside.
 };
 
 /// The robot of a document as it stands; `which` is what a message calls it. Errors: those of
@@ -42,6 +43,10 @@ std::string move_text(const MoveReport& report);
 
 /// A table as CSV of the moves in their order, with the worst of each one's stages.
 std::string move_csv(const MoveReport& report);
+
+/// Lines of JSON: one for each step of a plan that was found, with the worst of its stages, and a
+/// last one that says what the search has found, and why no more.
+std::string move_lines(const MoveReport& report);
 
 /// The start with the steps that were found.
 Document move_steps(const MoveReport& report);

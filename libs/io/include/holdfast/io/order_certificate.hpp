@@ -4,6 +4,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "holdfast/base/result.hpp"
 #include "holdfast/io/document.hpp"
@@ -31,6 +32,12 @@ base::Result<NamedOrderCertificate> read_order_certificate(std::string_view text
 
 /// Whether a text says that it is a certificate of an order.
 bool is_order_certificate(std::string_view text);
+
+/// The structure with all modules that are there or that its steps attach, and without steps.
+Document with_all_modules(Document document);
+
+/// The structure without the modules in some of its cells; it has no steps.
+Document without_modules(Document document, std::vector<base::Cell> cells);
 
 /// A structure whose modules are those of the order's start and whose steps attach all others (or,
 /// of an order that was not found, those that were reached), or where the robot is taken apart one

@@ -35,6 +35,9 @@ struct OrderTask {
   bool in_pieces = false;
 };
 
+/// Hears of a step of an order, and of the state behind it.
+using StepListener = std::function<void(const Batch& step, const Judgement& judged)>;
+
 struct RobotOrderOptions {
   /// The options of OrderOptions but the group size, which is the task's.
   std::uint64_t seed = 0;
@@ -43,6 +46,10 @@ struct RobotOrderOptions {
   std::function<bool()> is_interrupted = {};
   Sense told_end = Sense::kGrowing;
   std::function<void(std::size_t states, std::size_t grown, std::size_t shrunk)> progress = {};
+  /// Called with every step of the order that is found, in the sequence in which steps are done,
+  /// and with the state behind it, as soon as both are certain: the step is not taken back. It is
+  /// called first with all modules that are there before any step.
+  StepListener certified = {};
   /// Solves in the end every state on the way that a bound has certified, while there is time: then
   /// RobotOrder::load_ratio_max is the largest of all.
   bool is_exact = false;
@@ -79,6 +86,13 @@ inline constexpr const char* kAtStart = "start";
 /// not safe (then `where` is kAtStart); a source is missing or is taken.
 base::Result<RobotOrder> find_robot_order(const OrderTask& task,
                                           const RobotOrderOptions& options = {});
+
+/// Tells all steps of an order that was found as RobotOrderOptions::certified says.
+void tell_steps(const Order& order, Sense told_end, const StepListener& certified);
+
+/// Sets the bound and the margin of an order, and raises its largest load ratio, by those of its
+/// states.
+void take_extremes(RobotOrder& result);
 
 /// What has been replayed of a certificate.
 struct CertificateCheck {

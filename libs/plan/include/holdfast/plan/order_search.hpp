@@ -108,7 +108,7 @@ struct Order {
   /// Whether the elements of a step come in any order, so that all parts of it are judged; else
   /// they come at the same instant.
   bool is_any_order = false;
-  /// By step, whether its elements touch none that is there; empty where all of them do.
+  /// Whether the elements of a step touch none that is there, by step; empty where all do.
   std::vector<bool> is_apart = {};
   /// The number of undecided states if, of kNotFound before time ran out, they are all that could
   /// be entered next, so that nothing is proved.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "holdfast/plan/robot_state.hpp"
+#include "orders/order_options.hpp"
 #include "plan_page.hpp"
 
 namespace holdfast {
@@ -25,17 +26,17 @@ base::Result<io::OrderReport> seek_order(const io::Document& target, const Order
                                   .parallel_max = request.parallel_max,
                                   .in_pieces = request.in_pieces},
                          .is_reversed = request.is_reversed};
+  plan::StepListener certified;
+  if (request.stream) {
+    certified = [&, number = std::size_t{0}](const plan::Batch& step,
+                                             const plan::Judgement& judged) mutable {
+      request.stream(io::order_step_line(report, number++, step, judged));
+    };
+  }
   const auto begin = std::chrono::steady_clock::now();
-  auto result = plan::find_robot_order(
-      report.task,
-      {.seed = request.seed,
-       .seconds_max = request.seconds_max,
-       .is_interrupted = request.is_interrupted,
-       .told_end = request.is_reversed ? plan::Sense::kShrinking : plan::Sense::kGrowing,
-       .progress = request.progress,
-       .is_exact =
-           request.is_exact || report.task.target.existing.size() <= plan::kExactModuleCount,
-       .thread_count = request.thread_count});
+  plan::RobotOrderOptions options = order_options(request, report.task.target.existing.size());
+  options.certified = certified;
+  auto result = plan::find_robot_order(report.task, options);
   if (!result) {
     return io::with_other_lattice(result.error(), target);
   }
