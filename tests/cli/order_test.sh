@@ -158,4 +158,30 @@ expect_exit 0 order ball.json --reverse -o apart.json
 expect_exit 0 order ball.json --continue apart.json --at 7 -o left.json
 expect_exit 0 steps left.json
 
+# In pieces: an arch that holds from both feet only.
+cat >small_arch.json <<'JSON'
+{"format": "holdfast-structure", "version": 2, "name": "small arch", "support_z": 0,
+ "material": {"strength_lateral_n": 0.8},
+ "modules": [[0, 0, 0], [0, 0, 1], [0, 0, 2], [1, 0, 2], [2, 0, 2], [3, 0, 2], [4, 0, 2],
+             [4, 0, 1], [4, 0, 0]]}
+JSON
+expect_exit 0 check small_arch.json
+expect_exit 1 order small_arch.json --help-seconds 0 --certificate none.json
+expect_line out 'NONE        there is no safe order that keeps the robot in one piece'
+expect_exit 0 order small_arch.json --pieces -o from_both.json --json from_both_report.json
+grep -q '"apart": true' from_both.json || fault 'no step is marked'
+expect_exit 0 steps from_both.json
+sed 's/, "apart": true//' from_both.json >lone.json
+expect_exit 65 steps lone.json
+expect_line err 'touches neither the robot nor a new module that does'
+expect_exit 0 order small_arch.json --pieces --reverse -o down.json
+expect_exit 0 steps down.json
+sed -i 's/"strength_lateral_n": 0.8/"strength_lateral_n": 0.3/' small_arch.json
+expect_exit 1 order small_arch.json --pieces --help-seconds 0 --certificate no_pieces.json
+expect_exit 0 steps no_pieces.json --verify
+expect_line out 'in one piece or in several'
+expect_exit 64 order small_arch.json --pieces --group 2
+expect_exit 64 order small_arch.json --pieces --parallel 2
+expect_exit 64 order small_arch.json --pieces --continue from_both.json
+
 echo "order: all as expected"

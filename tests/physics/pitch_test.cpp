@@ -8,10 +8,10 @@
 #include <cmath>
 #include <set>
 
+#include "general_robot.hpp"
 #include "holdfast/holdfast.hpp"
 #include "holdfast/plan/candidates.hpp"
-#include "support/general_robot.hpp"
-#include "support/seeds.hpp"
+#include "seeds.hpp"
 
 namespace holdfast {
 namespace {

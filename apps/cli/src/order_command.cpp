@@ -377,7 +377,8 @@ void add_ways(CLI::App& command, OrderArguments& options) {
                 "Modules may also come on the ground away from the others, so that the robot grows "
                 "in pieces, each of which is judged by itself")
       ->excludes("--group")
-      ->excludes("--parallel");
+      ->excludes("--parallel")
+      ->excludes("--continue");
   command.add_flag("--reverse", options.is_reversed,
                    "Take the robot apart, from the target to the start");
 }
@@ -389,8 +390,7 @@ void add_continuation(CLI::App& command, OrderArguments& options) {
                       "Go on with a plan of -o, keeping its last steps as far as they are safe: "
                       "TARGET is the robot as it is now")
           ->type_name("PLAN")
-          ->excludes("--from")
-          ->excludes("--pieces");
+          ->excludes("--from");
   command
       .add_option("--at", options.done_count,
                   "The number of steps of the plan that are done; TARGET then is the robot that it "

@@ -335,6 +335,13 @@ TEST(Sequence, names_the_step_and_stage_of_what_cannot_be_done) {
   ASSERT_FALSE(stray);
   EXPECT_EQ(stray.error().message.substr(0, 50),
             "step 0, connect: the module that is attached at (9");
+  // Unless it is to be there, and something holds it.
+  const std::vector<model::Step> apart = {{.attach = {{9, 0, 0}}, .is_apart = true}};
+  const auto pieces = judge_sequence(arm, apart);
+  ASSERT_TRUE(pieces) << pieces.error().message;
+  EXPECT_EQ(pieces.value().steps[0].stages[2].piece_count, 2U);
+  const std::vector<model::Step> high = {{.attach = {{9, 0, 1}}, .is_apart = true}};
+  EXPECT_NE(judge_sequence(arm, high).error().message.find("nothing holds"), std::string::npos);
 }
 
 }  // namespace
