@@ -130,7 +130,7 @@ _holdfast() {
         --support-z) : ;;
         --pitch) : ;;
         --safety-factor|--margin) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --from --continue --at --reach --source --avoid --group --parallel --reverse --seed --exact --seconds --help-seconds --threads -q --quiet -o --output --json --csv --html --certificate --strength-needed --stream --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --from --continue --at --reach --source --avoid --group --parallel --pieces --reverse --seed --exact --seconds --help-seconds --threads -q --quiet -o --output --json --csv --html --certificate --strength-needed --stream --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin"; else files=1; fi ;;
       esac
       ;;
     move)
@@ -158,7 +158,7 @@ _holdfast() {
         --support-z) : ;;
         --pitch) : ;;
         --safety-factor|--margin) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --pivot --within --geometry-only --seed --seconds --threads -q --quiet -o --output --json --csv --html --verify --stream --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --pivot --motions --within --geometry-only --seed --seconds --threads -q --quiet -o --output --json --csv --html --verify --stream --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin"; else files=1; fi ;;
       esac
       ;;
     simulate)
