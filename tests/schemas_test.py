@@ -257,6 +257,7 @@ def commands(scenarios, tests):
     yield ['order', 'cube.json', '--reach', 'line', '--from', 'row.json']
     yield ['order', 'row.json', '--continue', 'row_plan.json', '--at', '1']
     yield ['order', 'cube.json', '--parallel', 'all', '--reverse']
+    yield ['order', f'{plan}/pair.json', '--pieces']
     yield ['order', f'{plan}/pair.json', '--parallel', '3']
     yield ['order', f'{plan}/pair.json', '--strength-needed', '--scatter', '10%', '--lose-one']
     yield ['order', 'row.json', '--scatter', '10%', '--lose-one', '--safety-factor', '1.5']
