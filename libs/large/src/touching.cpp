@@ -107,7 +107,7 @@ Bodies::Bodies(const model::Robot& robot, std::span<const model::Obstacle> obsta
     const base::Cell one = {axis == 0 ? 1 : 0, axis == 1 ? 1 : 0, axis == 2 ? 1 : 0};
     sides_[axis] = base::can_stretch(shape, axis) ? base::place_of(robot.lattice(), one)[axis] : 1;
   }
-  radius_ = kRadius * pitch_ * std::ranges::max(sides_);
+  radius_ = kRadius * pitch_ * *std::ranges::max_element(sides_);
   const base::NodePlaces place(robot.lattice(), pitch_);
   for (const model::Module& module : robot.modules()) {
     places_.push_back(place(module.cell));
