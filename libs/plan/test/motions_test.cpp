@@ -43,7 +43,9 @@ TEST(Motions, have_as_many_images_as_the_lattice_has_maps) {
       {base::kFaceCentred, {24, 48}},
       {base::kHexagonal, {12, 24}},
       {base::kHexagonalPrism, {12, 24}}};
-  for (const auto& [lattice, count] : groups) {
+  for (const auto& group : groups) {
+    const base::Lattice& lattice = group.first;
+    const std::array<std::size_t, 2>& count = group.second;
     EXPECT_EQ(images_of(lattice, skew, MotionImages::kNone).size(), 1U);
     EXPECT_EQ(images_of(lattice, skew, MotionImages::kTurned).size(), count[0]);
     EXPECT_EQ(images_of(lattice, skew, MotionImages::kMirrored).size(), count[1]);
