@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Optional, Union
 
 from . import _core
@@ -13,6 +15,21 @@ Size = Union[int, tuple[int, int], None]
 """A width, or a width and a height, in pixels."""
 View = Union[str, tuple[float, float]]
 """``iso``, ``front``, ``side``, ``top``, or azimuth and elevation of the eye, in degrees."""
+
+
+class FileAbsent(_core.Error, FileNotFoundError):
+    """There is no such file; the error of Python's open() as well."""
+
+
+@contextmanager
+def read_from(path: Path) -> Iterator[None]:
+    """An error of reading a file that is not there is `FileAbsent`."""
+    try:
+        yield
+    except _core.Error as error:
+        if os.path.exists(path):
+            raise
+        raise FileAbsent(str(error)) from None
 
 
 def figure(size: Size, view: View, title: str, grey: bool, legend: bool) -> _core.Figure:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 
 from . import _core
 from ._answers import Moves, Order, Places, Steps
-from ._figures import Path
+from ._figures import FileAbsent, Path
 from ._given import Cell, Cells
 from ._plan_failures import PlanQuestions, asked_of
 from ._progress import Progress, told
@@ -44,6 +44,13 @@ def next_places(robot: Union[Robot, Path], *, threads: int = 0, memory: float = 
                               **questions)
 
 
+def _motions(given: Union[Path, None]) -> str:
+    name = os.fsdecode(given or '')
+    if name not in ('', 'pivoting', 'catoms3D') and not os.path.exists(name):
+        raise FileAbsent(f'{name}: no such file')
+    return name
+
+
 def steps(robot: Union[Robot, Path], plan: Optional[Sequence[Mapping[str, Any]]] = None, *,
           threads: int = 0, memory: float = 4, ends_when_unsafe: bool = False,
           exact: bool = False, motions: Union[Path, None] = None,
@@ -73,7 +80,7 @@ def steps(robot: Union[Robot, Path], plan: Optional[Sequence[Mapping[str, Any]]]
     with told(progress, 'steps', is_counted=True) as tell:
         judged: Steps = Steps._of(
             _core.steps(start._held, threads, memory, ends_when_unsafe, exact,
-                        os.fsdecode(motions or ''), asked_of('steps', questions), tell))
+                        _motions(motions), asked_of('steps', questions), tell))
     judged.robot = start
     return judged
 
@@ -152,7 +159,7 @@ def move(start: Union[Robot, Path], target: Union[Robot, Path], *, pivots: bool 
     """
     if pivots and motions is not None:
         raise ValueError('pivots and motions: expected one of them')
-    ways = 'pivoting' if pivots else os.fsdecode(motions or '')
+    ways = 'pivoting' if pivots else _motions(motions)
     with told(progress, 'move') as tell:
         found: Moves = Moves._of(_core.move(_robot(start)._asked(safety_factor),
                                             _robot(target)._asked(safety_factor), ways,

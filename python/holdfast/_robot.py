@@ -16,7 +16,7 @@ from . import _core, _geometry, _maker
 from ._answers import Places
 from ._distributed import Run, events_of, find_image, noise_of
 from ._failures import Cascade, LoseOne, cascade_of, lose_one_of
-from ._figures import Path
+from ._figures import Path, read_from
 from ._given import (Cell, Cells, Table, cell_of, counted, floats, head_of, json_of, level, listed,
                      load_list, obstacle_list, own_parts, reading)
 from ._plan_failures import PlanQuestions, asked_of
@@ -121,8 +121,9 @@ class Robot:
         `warnings`. `supports` is the layer z whose modules rest on the ground, or ``lowest``,
         whatever the file says; `pitch` the edge of a module in the unit of a mesh.
         """
-        return cls._of(_core.Structure.load_file(
-            path, reading(lattice, robot, allow_unknown, supports, pitch)))
+        with read_from(path):
+            return cls._of(_core.Structure.load_file(
+                path, reading(lattice, robot, allow_unknown, supports, pitch)))
 
     @classmethod
     def from_text(cls, text: str, *, name: str = '', lattice: str = '', robot: str = '',
