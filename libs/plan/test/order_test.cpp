@@ -169,11 +169,12 @@ Cells take_piece(Cells& cells, const std::vector<model::CellPair>& released) {
   Cells piece = {cells.back()};
   cells.pop_back();
   for (bool has_grown = true; has_grown;) {
-    const auto added = std::ranges::stable_partition(
-        cells, [&](const Cell& cell) { return !is_beside(piece, cell, released); });
-    has_grown = !added.empty();
-    piece.insert(piece.end(), added.begin(), added.end());
-    cells.erase(added.begin(), added.end());
+    const auto added = std::stable_partition(cells.begin(), cells.end(), [&](const Cell& cell) {
+      return !is_beside(piece, cell, released);
+    });
+    has_grown = added != cells.end();
+    piece.insert(piece.end(), added, cells.end());
+    cells.erase(added, cells.end());
   }
   return piece;
 }
