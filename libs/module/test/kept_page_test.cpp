@@ -60,6 +60,9 @@ class TestFlash final : public FlashPlaces {
   std::array<int, kCount> erasures{};
 
  private:
+  /// What lies there is aligned as a configuration is.
+  struct alignas(8) Place : std::array<std::uint8_t, kBytes> {};
+
   static std::size_t at(int place) { return static_cast<std::size_t>(place); }
 
   bool is_over() { return left_-- == 0; }
@@ -70,7 +73,7 @@ class TestFlash final : public FlashPlaces {
     }
   }
 
-  alignas(8) std::array<std::array<std::uint8_t, kBytes>, kCount> places_{};
+  std::array<Place, kCount> places_{};
   std::mt19937_64 noise_;
   int left_ = -1;
 };
