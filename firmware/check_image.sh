@@ -25,7 +25,7 @@ if [ -n "$bad$heap" ]; then
   printf 'firmware: linked, but not allowed:\n%s\n%s\n' "$bad" "$heap"
   fault=1
 fi
-if [ $((text + data)) -gt $flash_max ]; then
+if [ $((text + data)) -gt "$flash_max" ]; then
   echo "firmware: $((text + data)) bytes of flash, expected at most $flash_max"
   fault=1
 fi
