@@ -264,6 +264,20 @@ TEST(VisibleSim, a_box_that_can_be_counted_in_cells_is_with_a_note_where_mm_woul
   }
 }
 
+TEST(VisibleSim, says_that_blocks_which_are_not_as_long_as_wide_are_read_as_cubes) {
+  const auto notes = [](std::string_view size, std::string_view own = "") {
+    return warning_of(fmt::format(
+        R"(<vs><parameters/><world gridSize="4,4,4"><blockList blockSize="{}">
+           <block position="1,1,0"/></blockList>{}</world></vs>)",
+        size, own));
+  };
+  EXPECT_TRUE(
+      contains(notes("25,25,11"), "blockSize is '25,25,11', and modules are taken as long"));
+  EXPECT_FALSE(contains(notes("25,25,25"), "blockSize"));
+  EXPECT_FALSE(contains(notes("40,40,41"), "blockSize"));
+  EXPECT_FALSE(contains(notes("25,25,11", R"(<holdfast lattice="hexagonal"/>)"), "blockSize is"));
+}
+
 /// VisibleSim's loops run to the last layer of the grid, without it (simulator.cpp, March 2025).
 TEST(VisibleSim, a_box_at_the_end_of_the_grid_lacks_what_visiblesim_leaves_out) {
   const auto notes = [](std::string_view box) {

@@ -194,6 +194,24 @@ void read_lattice(XmlReading& reading, const pugi::xml_node& blocks, const pugi:
   }
 }
 
+/// Says that blocks which are not as long as wide are taken for cubes.
+void note_block_size(XmlReading& reading, const pugi::xml_node& blocks) {
+  constexpr double kEqual = 1.05;  // Blinky Blocks are 40, 40 and 41 mm.
+  const pugi::xml_attribute stated = blocks.attribute("blockSize");
+  const auto size = parse_triple<double>(stated.value());
+  if (!size || reading.has_failed() || reading.document.extension.pitch_mm ||
+      reading.document.extension.lattice != base::kCubic) {
+    return;
+  }
+  const auto [least, most] = std::ranges::minmax(*size);
+  if (least > 0 && most > kEqual * least) {
+    reading.warn(fmt::format("blockSize is {}, and modules are taken as long as wide; \"pitch_mm\" "
+                             "of holdfast JSON states lengths along x, y and z",
+                             excerpt(stated.value())),
+                 [&] { return reading.line(blocks); });
+  }
+}
+
 void read_world(XmlReading& reading, const pugi::xml_node& world, const ReadOptions& options) {
   Document& document = reading.document;
   document.world = reading.attributes(world, is_free);
@@ -217,6 +235,7 @@ void read_world(XmlReading& reading, const pugi::xml_node& world, const ReadOpti
   read_targets(reading, targets);
   read_scenery(reading, world);
   read_own_element(reading, own);
+  note_block_size(reading, blocks);
   take_goal_shapes(reading, targets, own);
   if (own.attribute("computed").value() == std::string_view(kGridSize)) {
     std::erase_if(document.world, [](const auto& entry) { return entry.first == kGridSize; });
