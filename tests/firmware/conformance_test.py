@@ -8,15 +8,14 @@ leaves it out): all cases pass. On lines that are spoiled the cases that are abo
 Bytes that the program expects of the conversation are those of docs/evidence/wire.md.
 """
 import json
-import os
 import pathlib
 import re
 import subprocess
 import sys
 import tempfile
-import threading
 import time
-import tty
+
+from joined_terminals import joined
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent))
 from schemas_test import Schemas, places_of  # noqa: E402
@@ -34,24 +33,6 @@ def expect(is_so, what):
     if not is_so:
         faults.append(what)
         print(f'FAULT: {what}', flush=True)
-
-
-def joined(spoil):
-    """Two terminals; what the first one says is spoiled on its way to the second."""
-    ends = [os.openpty() for _ in range(2)]
-    for _, terminal in ends:
-        tty.setraw(terminal)
-
-    def carry(source, target, change):
-        try:
-            while True:
-                os.write(target, change(os.read(source, 4096)))
-        except OSError:
-            pass
-    for k, change in ((0, spoil), (1, lambda data: data)):
-        threading.Thread(target=carry, args=(ends[k][0], ends[1 - k][0], change),
-                         daemon=True).start()
-    return [os.ttyname(terminal) for _, terminal in ends]
 
 
 def conformance(holdfast, device, *options):

@@ -8,21 +8,19 @@ one free face of each module has a pseudo-terminal of its own, at which the inst
 says is compared with the exact answer of 'holdfast check', and with what was told.
 """
 import json
-import os
 import pathlib
 import subprocess
 import sys
 import tempfile
-import threading
 import time
-import tty
+
+from joined_terminals import DIRECTIONS, joined
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent))
 from schemas_test import Schemas, places_of  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PATIENCE_S = 60
-DIRECTIONS = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
 
 faults = []
 schemas = Schemas(ROOT / 'docs/schemas')
@@ -41,23 +39,6 @@ def all_keys_occur():
     for schema in ('listen.schema.json', 'twin.schema.json'):
         for place in places_of(schema, schemas.file(schema)):
             expect(place in places or place in seldom, f'occurs in no report: {place}')
-
-
-def joined():
-    """Two terminals whose bytes go from one to the other, and what to close."""
-    ends = [os.openpty() for _ in range(2)]
-    for _, terminal in ends:
-        tty.setraw(terminal)
-
-    def carry(source, target):
-        try:
-            while True:
-                os.write(target, os.read(source, 4096))
-        except OSError:
-            pass
-    for k in range(2):
-        threading.Thread(target=carry, args=(ends[k][0], ends[1 - k][0]), daemon=True).start()
-    return [os.ttyname(terminal) for _, terminal in ends]
 
 
 def checked(schema, text):

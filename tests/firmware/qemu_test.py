@@ -17,7 +17,8 @@ import sys
 import tempfile
 import time
 
-DIRECTIONS = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
+from joined_terminals import DIRECTIONS
+
 VERDICTS = ['none', 'safe', 'overload', 'unstable', 'undecided']
 CONFIGURATION_ADDRESS = 0x080E0000
 TIMEOUT_S = 120

@@ -8,30 +8,12 @@ the others are emulated, and a pseudo-terminal joins the two ('emulate --serial'
 be the exact one of 'holdfast check', and both must come to it.
 """
 import json
-import os
 import pathlib
 import subprocess
 import sys
 import tempfile
-import threading
-import tty
 
-NAMES = ['+x', '-x', '+y', '-y', '+z', '-z']
-DIRECTIONS = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
-
-
-def joined():
-    """Two terminals whose bytes go from one to the other."""
-    ends = [os.openpty() for _ in range(2)]
-    for _, terminal in ends:
-        tty.setraw(terminal)
-
-    def carry(source, target):
-        while True:
-            os.write(target, os.read(source, 4096))
-    for k in range(2):
-        threading.Thread(target=carry, args=(ends[k][0], ends[1 - k][0]), daemon=True).start()
-    return [os.ttyname(terminal) for _, terminal in ends]
+from joined_terminals import DIRECTIONS, NAMES, joined
 
 
 def main():

@@ -17,7 +17,8 @@ import tempfile
 import time
 import tty
 
-DIRECTIONS = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
+from joined_terminals import DIRECTIONS
+
 TIMEOUT_S = 60
 QUIET_S = 1.0  # So long nobody may have changed what was said.
 

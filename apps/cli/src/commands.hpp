@@ -85,12 +85,12 @@ inline CLI::Option& add_output(CLI::App& command, const std::string& name, std::
   return *command.add_option(name, path, help)->type_name(type)->group(kOutputs);
 }
 
-/// The option --threads.
 /// The option for motions as data, of find_motions().
 inline CLI::Option& add_motions(CLI::App& command, std::string& motions, const std::string& help) {
   return *command.add_option("--motions", motions, help)->type_name("NAME|FILE");
 }
 
+/// The option --threads.
 inline void add_threads(CLI::App& command, int& thread_count) {
   command
       .add_option("--threads", thread_count,
@@ -211,6 +211,11 @@ inline CLI::Option* add_stream(CLI::App& command, bool& is_streamed) {
   return command.add_flag("--stream", is_streamed,
                           "Write every step as a line of JSON to standard output as soon as it is "
                           "certified and will not be taken back, then a line with the result");
+}
+
+/// Bytes as what write_or_complain() takes.
+inline std::string_view as_text(std::span<const std::uint8_t> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 /// Prints a line that somebody waits for.

@@ -82,9 +82,7 @@ std::string report(const ConformanceArguments& arguments,
 }
 
 int write_page(const std::string& path) {
-  const auto page = conformance_page();
-  const std::string_view bytes(reinterpret_cast<const char*>(page.data()), page.size());
-  return write_or_complain(path, bytes) ? kExitSafe : kExitBadInput;
+  return write_or_complain(path, as_text(conformance_page())) ? kExitSafe : kExitBadInput;
 }
 
 int run_conformance(const ConformanceArguments& arguments) {

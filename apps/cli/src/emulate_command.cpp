@@ -161,9 +161,7 @@ class EmulateRun {
   }
 
   bool write_page(const std::string& name, std::span<const std::uint8_t> page) const {
-    return write_or_complain(
-        options_.pages + "/" + name,
-        std::string_view(reinterpret_cast<const char*>(page.data()), page.size()));
+    return write_or_complain(options_.pages + "/" + name, as_text(page));
   }
 
   static sim::Time microseconds(double seconds) { return static_cast<sim::Time>(seconds * 1e6); }

@@ -26,9 +26,7 @@ struct TwinArguments {
 void print_report(const TwinReport& report) {
   for (const TwinModule& module : report.modules) {
     fmt::print("{}: module {} at {}\n", module.device, module.id,
-               module.cell
-                   ? fmt::format("({},{},{})", module.cell->x, module.cell->y, module.cell->z)
-                   : std::string("(?)"));
+               module.cell ? model::text(*module.cell) : "(?)");
     if (!module.rows.empty()) {
       fmt::print("  {:<12} {:<26} {}\n", "", "table", "twin");
     }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "part_of.hpp"
+#include "holdfast/plan/part_of.hpp"
 
 #include <algorithm>
 

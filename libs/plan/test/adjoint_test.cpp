@@ -22,8 +22,8 @@
 #include "holdfast/model/families.hpp"
 #include "holdfast/model/material.hpp"
 #include "holdfast/plan/order_search.hpp"
+#include "holdfast/plan/part_of.hpp"
 #include "nearest_first.hpp"
-#include "part_of.hpp"
 
 namespace holdfast::plan {
 namespace {

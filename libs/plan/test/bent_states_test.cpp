@@ -9,8 +9,8 @@
 #include "general_robot.hpp"
 #include "holdfast/plan/candidates.hpp"
 #include "holdfast/plan/order.hpp"
+#include "holdfast/plan/part_of.hpp"
 #include "holdfast/plan/sequence.hpp"
-#include "part_of.hpp"
 #include "seeds.hpp"
 
 namespace holdfast::plan {

@@ -12,9 +12,9 @@
 #include "family_spec.hpp"
 #include "general_robot.hpp"
 #include "holdfast/base/rng.hpp"
+#include "holdfast/plan/part_of.hpp"
 #include "holdfast/plan/sequence.hpp"
 #include "nearest_first.hpp"
-#include "part_of.hpp"
 #include "random_robot.hpp"
 #include "seeds.hpp"
 

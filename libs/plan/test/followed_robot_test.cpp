@@ -16,8 +16,8 @@
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/model/families.hpp"
 #include "holdfast/model/material.hpp"
+#include "holdfast/plan/part_of.hpp"
 #include "nearest_first.hpp"
-#include "part_of.hpp"
 
 namespace holdfast::plan {
 namespace {

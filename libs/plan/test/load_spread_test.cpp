@@ -17,8 +17,8 @@
 #include "family_spec.hpp"
 #include "holdfast/model/families.hpp"
 #include "holdfast/model/material.hpp"
+#include "holdfast/plan/part_of.hpp"
 #include "nearest_first.hpp"
-#include "part_of.hpp"
 #include "seeds.hpp"
 
 namespace holdfast::plan {

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "grown_robot.hpp"
 #include "holdfast/base/rng.hpp"
 #include "holdfast/plan/module_moves.hpp"
 #include "moves.hpp"
@@ -64,24 +65,6 @@ TEST(Motions, have_as_many_images_as_the_lattice_has_maps) {
   EXPECT_EQ(images_of(base::kCubic, slide, MotionImages::kMirrored).size(), 24U);
 }
 
-/// A robot that has grown at random from a fixed module, without a floor.
-model::RobotSpec grown_robot(const base::Lattice& lattice, base::Rng& rng) {
-  model::RobotSpec spec{.support_z = std::nullopt};
-  spec.lattice = lattice;
-  spec.existing = spec.fixed = {{0, 0, 0}};
-  const std::size_t size = 3 + rng.below(10);
-  while (spec.existing.size() < size) {
-    const Cell& beside = spec.existing[rng.below(spec.existing.size())];
-    const auto direction = static_cast<base::Direction>(
-        rng.below(static_cast<std::uint64_t>(lattice.direction_count)));
-    const Cell next = base::neighbour(lattice, beside, direction);
-    if (std::ranges::find(spec.existing, next) == spec.existing.end()) {
-      spec.existing.push_back(next);
-    }
-  }
-  return spec;
-}
-
 /// A slide along two modules in a row, and a turn about one over the free cell beside it: the moves
 /// of sliding cubes whose slides are carried by nothing else.
 Motions sliding() {
@@ -99,7 +82,7 @@ TEST(Motions, of_sliding_cubes_lead_where_sliding_cubes_go) {
   base::Rng rng(3);
   std::size_t count = 0;
   for (int round = 0; round < holdfast::test::campaign(200); ++round) {
-    const model::RobotSpec spec = grown_robot(base::kCubic, rng);
+    const model::RobotSpec spec = test::grown_robot(base::kCubic, 3 + rng.below(10), rng);
     const RobotState robot(spec);
     for (const std::int32_t module : loose_modules(robot)) {
       const Cell from = robot.module(module).cell;
@@ -132,15 +115,14 @@ TEST(Motions, need_their_modules_and_their_free_cells) {
 
 TEST(Motions, lead_between_no_two_opposite_modules_if_they_are_not_to) {
   // Along a wall into a gap between two modules, and past it.
-  const RobotState robot(model::RobotSpec{.existing = {{0, 0, 0},
-                                                       {1, 0, 0},
-                                                       {2, 0, 0},
-                                                       {1, 1, 0},
-                                                       {1, -1, 0},
-                                                       {1, 1, 1},
-                                                       {1, -1, 1},
-                                                       {0, 0, 1}},
-                                          .support_z = 0});
+  const auto with_one_at = [](const Cell& cell) {
+    model::RobotSpec spec{
+        .existing = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 1, 0}, {1, -1, 0}, {1, 1, 1}, {1, -1, 1}},
+        .support_z = 0};
+    spec.existing.push_back(cell);
+    return RobotState(spec);
+  };
+  const RobotState robot = with_one_at({0, 0, 1});
   Motions motions = sliding();
   EXPECT_TRUE(ends_of(robot, {0, 0, 1}, motions).contains({1, 0, 1}));
   motions.goes_between = false;
@@ -148,15 +130,7 @@ TEST(Motions, lead_between_no_two_opposite_modules_if_they_are_not_to) {
   EXPECT_FALSE(ends.contains({1, 0, 1}));
   EXPECT_FALSE(ends.empty());
   // Who is there does not leave.
-  const RobotState inside(model::RobotSpec{.existing = {{0, 0, 0},
-                                                        {1, 0, 0},
-                                                        {2, 0, 0},
-                                                        {1, 1, 0},
-                                                        {1, -1, 0},
-                                                        {1, 1, 1},
-                                                        {1, -1, 1},
-                                                        {1, 0, 1}},
-                                           .support_z = 0});
+  const RobotState inside = with_one_at({1, 0, 1});
   EXPECT_TRUE(ends_of(inside, {1, 0, 1}, motions).empty());
   motions.goes_between = true;
   EXPECT_FALSE(ends_of(inside, {1, 0, 1}, motions).empty());
@@ -184,7 +158,7 @@ TEST(Motions, without_those_between_opposing_modules_are_all_others) {
        {base::kCubic, base::kFaceCentred, base::kHexagonal, base::kHexagonalPrism}) {
     const Motions motions{.lattice = lattice, .goes_between = false};
     for (int round = 0; round < holdfast::test::campaign(100); ++round) {
-      const model::RobotSpec spec = grown_robot(lattice, rng);
+      const model::RobotSpec spec = test::grown_robot(lattice, 3 + rng.below(10), rng);
       const RobotState robot(spec);
       for (const std::int32_t module : loose_modules(robot)) {
         const Cell from = robot.module(module).cell;

@@ -13,6 +13,7 @@
 #include <set>
 #include <vector>
 
+#include "grown_robot.hpp"
 #include "holdfast/base/rng.hpp"
 #include "holdfast/plan/module_moves.hpp"
 #include "moves.hpp"
@@ -200,20 +201,7 @@ TEST(Rolling, balls_and_discs_move_where_they_come_nearer_than_a_pitch_to_nobody
   int barred_count = 0;
   for (const base::Lattice& lattice : {base::kHexagonal, base::kFaceCentred}) {
     for (int round = 0; round < holdfast::test::campaign(150); ++round) {
-      model::RobotSpec spec{.support_z = std::nullopt};
-      spec.lattice = lattice;
-      spec.fixed = {{0, 0, 0}};
-      spec.existing = spec.fixed;
-      const std::size_t count = 3 + rng.below(12);
-      while (spec.existing.size() < count) {
-        const Cell& beside = spec.existing[rng.below(spec.existing.size())];
-        const auto direction = static_cast<base::Direction>(
-            rng.below(static_cast<std::uint64_t>(lattice.direction_count)));
-        const Cell next = base::neighbour(lattice, beside, direction);
-        if (std::ranges::find(spec.existing, next) == spec.existing.end()) {
-          spec.existing.push_back(next);
-        }
-      }
+      const model::RobotSpec spec = test::grown_robot(lattice, 3 + rng.below(12), rng);
       const RobotState robot = state_of(spec);
       for (const std::int32_t module : loose_modules(robot)) {
         const Cell from = robot.module(module).cell;

@@ -13,8 +13,8 @@
 
 #include "bounds/energy_bound.hpp"
 #include "family_spec.hpp"
+#include "holdfast/plan/part_of.hpp"
 #include "nearest_first.hpp"
-#include "part_of.hpp"
 
 namespace holdfast::plan {
 namespace {

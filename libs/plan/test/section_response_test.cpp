@@ -17,7 +17,7 @@
 #include "equilibria/carried_force.hpp"
 #include "holdfast/base/lattice.hpp"
 #include "holdfast/model/material.hpp"
-#include "part_of.hpp"
+#include "holdfast/plan/part_of.hpp"
 #include "seeds.hpp"
 
 namespace holdfast::plan {

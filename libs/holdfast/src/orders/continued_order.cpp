@@ -10,6 +10,8 @@
 #include <chrono>
 #include <utility>
 
+#include "holdfast/model/cell_index.hpp"
+#include "holdfast/plan/part_of.hpp"
 #include "holdfast/plan/sequence.hpp"
 #include "orders/order_options.hpp"
 #include "orders/order_rest.hpp"
@@ -29,14 +31,7 @@ constexpr std::size_t kTriedOneByOne = 8;
 plan::Judgement judged_of(const plan::StepJudgement& step, bool has_parts) {
   plan::Judgement worst = step.stages.back();
   for (const plan::StageJudgement& stage : step.stages) {
-    if (has_parts) {
-      worst.load_ratio_max = std::max(worst.load_ratio_max, stage.load_ratio_max);
-      worst.load_ratio_high = std::max(worst.load_ratio_high, stage.load_ratio_high);
-      worst.is_bound = worst.is_bound || stage.is_bound;
-      worst.margin_mm = worst.margin_mm && stage.margin_mm
-                            ? std::min(worst.margin_mm, stage.margin_mm)
-                            : std::max(worst.margin_mm, stage.margin_mm);
-    }
+    worst = has_parts ? plan::both_of(worst, stage) : worst;
   }
   if (!worst.load_ratio_high) {
     worst.load_ratio_high = worst.load_ratio_max;  // It was solved.
@@ -76,10 +71,9 @@ class Continuation {
   std::optional<base::Error> find_fault() const;
   std::optional<plan::Element> element_in(const Cell& cell) const;
   std::vector<Cell> cells_of(const std::vector<plan::Element>& elements) const;
-  model::RobotSpec part_of(const plan::ElementSet& state) const;
   plan::ElementSet least_of_chain() const;
   void make_chain();
-  bool has_way(std::size_t step) const;
+  bool has_way(const plan::ReachFinder& finder, std::size_t step) const;
   base::Result<io::Document> tail_document(std::size_t first) const;
   std::optional<base::Error> judge_tail();
   base::Result<io::OrderReport> search();
@@ -91,6 +85,7 @@ class Continuation {
   OrderRequest request_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   plan::OrderTask task_;
+  model::CellIndex index_{0};                ///< Of the target's modules.
   std::vector<plan::Batch> steps_;           ///< Of the plan, as far as they are left to do.
   bool is_any_order_ = false;                ///< Whether their modules come so.
   std::vector<plan::ElementSet> states_;     ///< Before each of them, and behind the last.
@@ -99,10 +94,8 @@ class Continuation {
 };
 
 std::optional<plan::Element> Continuation::element_in(const Cell& cell) const {
-  const std::vector<Cell>& cells = task_.target.existing;
-  const auto found = std::ranges::find(cells, cell);
-  return found == cells.end() ? std::optional<plan::Element>()
-                              : static_cast<plan::Element>(found - cells.begin());
+  const std::int32_t found = index_.find(cell);
+  return found == model::CellIndex::kNone ? std::optional<plan::Element>() : found;
 }
 
 std::vector<Cell> Continuation::cells_of(const std::vector<plan::Element>& elements) const {
@@ -111,13 +104,6 @@ std::vector<Cell> Continuation::cells_of(const std::vector<plan::Element>& eleme
     cells.push_back(task_.target.existing[static_cast<std::size_t>(element)]);
   }
   return cells;
-}
-
-model::RobotSpec Continuation::part_of(const plan::ElementSet& state) const {
-  model::RobotSpec spec = task_.target;
-  spec.existing = cells_of(state.elements());
-  model::forget_absent(spec);
-  return spec;
 }
 
 std::optional<base::Error> Continuation::find_fault() const {
@@ -190,8 +176,7 @@ void Continuation::make_chain() {
 }
 
 /// Whether the modules of a step get to their cells, or leave them.
-bool Continuation::has_way(std::size_t step) const {
-  const plan::ReachFinder finder(task_.target, task_.rule);
+bool Continuation::has_way(const plan::ReachFinder& finder, std::size_t step) const {
   plan::ElementSet state = states_[rest_.is_reversed ? step + 1 : step];
   const std::vector<Cell> cells = cells_of(steps_[step]);
   if (is_any_order_) {
@@ -242,6 +227,7 @@ std::optional<base::Error> Continuation::judge_tail() {
     options.solved_count_max = plan::kExactModuleCount;
   }
   options.is_interrupted = [&] { return is_over(); };
+  const plan::ReachFinder finder(task_.target, task_.rule);
   for (std::size_t first = 0; first < count && !is_over();) {
     const auto document = tail_document(first);
     const auto sequence = document ? io::make_sequence(document.value())
@@ -259,7 +245,7 @@ std::optional<base::Error> Continuation::judge_tail() {
     const std::vector<plan::StepJudgement>& found = judged.value().steps;
     const bool is_whole = found.size() == count - first;
     for (std::size_t i = found.size();
-         is_whole && i > 0 && is_safe_step(found[i - 1]) && has_way(first + i - 1); --i) {
+         is_whole && i > 0 && is_safe_step(found[i - 1]) && has_way(finder, first + i - 1); --i) {
       first_safe_ = first + i - 1;
       judgements_[first_safe_] =
           judged_of(found[i - 1], is_any_order_ && steps_[first_safe_].size() > 1);
@@ -275,7 +261,7 @@ base::Result<plan::RobotOrder> Continuation::seek(std::size_t first) const {
   if (rest_.is_reversed) {
     task.start = cells_of(states_[first].elements());
   } else {
-    task.target = part_of(states_[first]);
+    task.target = plan::part_of(task_.target, states_[first]);
   }
   OrderRequest request = request_;
   request.seconds_max = std::max(0.0, request_.seconds_max - seconds_passed()) / 2;
@@ -335,6 +321,10 @@ base::Result<io::OrderReport> Continuation::run() {
            .group_size = request_.group_size,
            .parallel_max = request_.parallel_max};
   task_.parallel_max = std::min(task_.parallel_max, task_.target.existing.size());
+  index_ = model::CellIndex(task_.target.existing.size());
+  for (std::size_t i = 0; i < task_.target.existing.size(); ++i) {
+    index_.insert(task_.target.existing[i], static_cast<std::int32_t>(i));
+  }
   if (auto fault = find_fault()) {
     return *std::move(fault);
   }

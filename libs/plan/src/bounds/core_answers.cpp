@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "part_of.hpp"
+#include "holdfast/plan/part_of.hpp"
 
 namespace holdfast::plan {
 namespace {

@@ -8,8 +8,8 @@
 #include "cut_vertices.hpp"
 #include "holdfast/base/rng.hpp"
 #include "holdfast/host/team.hpp"
+#include "holdfast/plan/part_of.hpp"
 #include "holdfast/verdict/rigid_body.hpp"
-#include "part_of.hpp"
 
 namespace holdfast::plan {
 namespace {

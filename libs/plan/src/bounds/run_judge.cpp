@@ -14,9 +14,9 @@
 #include "bounds/followed_robot.hpp"
 #include "bounds/section_response.hpp"
 #include "holdfast/host/team.hpp"
+#include "holdfast/plan/part_of.hpp"
 #include "holdfast/verdict/rigid_body.hpp"
 #include "own_solution.hpp"
-#include "part_of.hpp"
 
 namespace holdfast::plan {
 namespace {

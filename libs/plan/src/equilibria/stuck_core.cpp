@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "holdfast/plan/part_of.hpp"
 #include "holdfast/verdict/assessment.hpp"
-#include "part_of.hpp"
 
 namespace holdfast::plan {
 

@@ -6,9 +6,9 @@
 #include <optional>
 #include <utility>
 
+#include "holdfast/plan/part_of.hpp"
 #include "judges/stage_judge.hpp"
 #include "own_solution.hpp"
-#include "part_of.hpp"
 
 namespace holdfast::plan {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "holdfast/base/check.hpp"
 #include "holdfast/plan/candidates.hpp"
-#include "part_of.hpp"
+#include "holdfast/plan/part_of.hpp"
 
 namespace holdfast::plan {
 namespace {

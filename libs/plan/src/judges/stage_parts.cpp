@@ -8,9 +8,9 @@
 
 #include "bounds/batch_bound.hpp"
 #include "bounds/run_judge.hpp"
+#include "holdfast/plan/part_of.hpp"
 #include "judges/stage_judge.hpp"
 #include "own_solution.hpp"
-#include "part_of.hpp"
 
 namespace holdfast::plan {
 namespace {

@@ -80,8 +80,11 @@ class MoveFinder {
 
   /// Whether a module's body gets into the next cell.
   bool can_step(const Cell& along) const {
-    if (has_motions() || lattice_ == base::kCubic) {
-      return !has_motions() || has_motion(along, std::nullopt);
+    if (has_motions()) {
+      return has_motion(along, std::nullopt);
+    }
+    if (lattice_ == base::kCubic) {
+      return true;
     }
     const Cell to = sum(axial_, along);
     const auto is_beside = [&](const Cell& away) {
@@ -179,10 +182,10 @@ class MoveFinder {
   /// Whether a module's body gets around a carrier.
   bool can_turn(const Cell& carrier, const Cell& along) const {
     const Cell to = sum(carrier, along);
-    if (has_motions() || lattice_ == base::kCubic) {
-      return !has_motions() || has_motion(difference(to, axial_), difference(carrier, axial_));
+    if (has_motions()) {
+      return has_motion(difference(to, axial_), difference(carrier, axial_));
     }
-    return !rolls(to, carrier) || can_roll(to, carrier);
+    return lattice_ == base::kCubic || !rolls(to, carrier) || can_roll(to, carrier);
   }
 
   void add_turns(const Cell& carrier) {

@@ -9,8 +9,8 @@
 #include <unordered_set>
 
 #include "bounds/robot_growth.hpp"
+#include "holdfast/plan/part_of.hpp"
 #include "orders/time_steps.hpp"
-#include "part_of.hpp"
 #include "patience.hpp"
 
 namespace holdfast::plan {
@@ -351,15 +351,15 @@ void take_extremes(RobotOrder& result) {
 
 void tell_steps(const Order& order, Sense told_end, const StepListener& certified) {
   const std::size_t count = order.steps.size();
-  const bool is_apart = told_end == Sense::kShrinking;
+  const bool is_reversed = told_end == Sense::kShrinking;
   Batch first = order.start.elements();
-  for (std::size_t i = 0; is_apart && i < count; ++i) {
+  for (std::size_t i = 0; is_reversed && i < count; ++i) {
     first.insert(first.end(), order.steps[i].begin(), order.steps[i].end());
   }
-  certified(first, order.judgements[is_apart ? count : 0]);
+  certified(first, order.judgements[is_reversed ? count : 0]);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t step = is_apart ? count - 1 - i : i;
-    certified(order.steps[step], order.judgements[is_apart ? step : step + 1]);
+    const std::size_t step = is_reversed ? count - 1 - i : i;
+    certified(order.steps[step], order.judgements[is_reversed ? step : step + 1]);
   }
 }
 
