@@ -117,15 +117,13 @@ TEST(Pitch, arms_tip_by_the_length_along_them) {
 struct Answers {
   verdict::Assessment assessment;
   std::optional<limit::LimitLoad> limit;
-  std::optional<large::Path> deformed;
 };
 
 Answers answers(const model::RobotSpec& spec, bool is_whole) {
-  const CheckResult result = check(make(spec), {.thread_count = 1,
-                                                .is_buckling_wanted = is_whole,
-                                                .is_limit_wanted = is_whole,
-                                                .is_deformed_wanted = false});
-  return {result.assessment, result.limit, result.deformed};
+  const CheckResult result = check(
+      make(spec),
+      {.thread_count = 1, .is_buckling_wanted = is_whole, .is_limit_wanted = is_whole});
+  return {result.assessment, result.limit};
 }
 
 /// A symmetry of the cubic lattice that maps lengths along axes onto lengths along others.
@@ -291,6 +289,34 @@ TEST(Pitch, robots_move_as_those_of_twice_as_many_modules_half_as_long) {
     }
   }
   EXPECT_GE(large_count, 6U);
+}
+
+/// A row that a force at its end, across it, turns by more than half a radian: two elements of half
+/// the length in a row follow the elastica of one, to the square of what one turns.
+TEST(Pitch, rows_bend_far_as_those_of_twice_as_many_modules_half_as_long) {
+  constexpr int kCount = 9;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    model::RobotSpec spec = cantilever(axis, (axis + 1) % 3, kCount);
+    model::Payload pull{.cell = spec.existing.back()};
+    pull.force_n[(axis + 1) % 3] = -6;
+    spec.payloads = {pull};
+    Three lengths = {8, 8, 8};
+    lengths[axis] = 16;
+    const auto coarse = large::follow(make(with_lengths(spec, lengths))).loaded;
+    model::RobotSpec fine = split(spec, axis);
+    fine.payloads.front().cell = fine.existing[kCount - 1];
+    const auto exact = large::follow(make(fine)).loaded;
+    ASSERT_TRUE(coarse && exact) << axis;
+    EXPECT_GT(coarse->rotation_max_rad, 0.5);
+    EXPECT_NEAR(coarse->rotation_max_rad, exact->rotation_max_rad, 1e-3);
+    for (std::size_t i = 0; i < kCount; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_NEAR(coarse->poses[i].displacement[k], exact->poses[i].displacement[k],
+                    1e-3 * exact->displacement_max_mm)
+            << axis << ' ' << i;
+      }
+    }
+  }
 }
 
 /// Every free cell is judged as a check of the robot with a module there.

@@ -2,11 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "holdfast/plan/sequence.hpp"
 
 namespace holdfast::plan::test {
+
+/// The lattices that there are, and cubes that are not as long as wide.
+inline const std::array<base::Lattice, 5> kLatticesAndBricks = {
+    base::kCubic, base::kFaceCentred, base::kHexagonal, base::kHexagonalPrism,
+    base::stretched(base::kCubic, {1.5, 2, 1})};
 
 /// The cells up to two steps away from a cell.
 inline std::vector<base::Cell> cells_near(const base::Lattice& lattice, const base::Cell& cell) {

@@ -134,7 +134,7 @@ TEST(Sequence, is_so_for_steps_of_every_kind) {
 
 TEST(Sequence, is_so_in_every_lattice_and_on_every_support) {
   std::size_t step_count = 0;
-  for (const base::Lattice& lattice : holdfast::test::kLattices) {
+  for (const base::Lattice& lattice : test::kLatticesAndBricks) {
     for (std::uint64_t seed = 0; seed < holdfast::test::campaign(4U, 2U); ++seed) {
       model::RobotSpec start = holdfast::test::general_robot(lattice, seed);
       if (seed % 2 == 1) {

@@ -182,7 +182,7 @@ model::RobotSpec with_payload(const RobotState& robot, const Scene& scene, const
 
 TEST(Stages, make_a_module_on_its_way_a_load_on_its_carrier_in_every_lattice) {
   std::size_t compared_count = 0;
-  for (const base::Lattice& lattice : holdfast::test::kLattices) {
+  for (const base::Lattice& lattice : test::kLatticesAndBricks) {
     for (std::uint64_t seed = 0; seed < holdfast::test::campaign(5U, 3U); ++seed) {
       const RobotState robot(holdfast::test::general_robot(lattice, seed));
       for (const ModuleState& module : robot.modules()) {
