@@ -25,6 +25,7 @@ import { makeMaterial } from './ui/material';
 import { Player } from './ui/player';
 import { printPoster } from './ui/poster';
 import { listenToPointer } from './ui/pointer';
+import { SelectionPanel } from './ui/selecting';
 import { openFirst, showWithoutPicture } from './ui/start';
 import { makeSurroundings } from './ui/surroundings';
 import { Timeline } from './ui/timeline';
@@ -39,6 +40,7 @@ declare global {
 
 const TOOLS: readonly [tool: Tool, text: Text, key: string][] = [
   ['look', 'Look', 'V'],
+  ['select', 'Select', 'G'],
   ['add', 'Attach', 'A'],
   ['remove', 'Remove', 'D'],
   ['paint', 'Paint', 'P'],
@@ -73,7 +75,7 @@ function makeTools(bench: Workbench): void {
   const tools = TOOLS.map(([tool, text, key]) => {
     const button = radio('', `${t(text)} (${key})`, () => bench.setTool(tool));
     // There is room for four names only.
-    button.append(icon(tool), ...(tool === 'obstacle' || tool === 'load' ? [] : [make('span', {}, t(text))]));
+    button.append(icon(tool), ...(['select', 'obstacle', 'load'].includes(tool) ? [] : [make('span', {}, t(text))]));
     button.setAttribute('aria-label', t(text));
     return button;
   });
@@ -106,7 +108,7 @@ function makeTools(bench: Workbench): void {
       byId('roles').replaceChildren(...offered);
       byId('roles').ariaLabel = bench.tool === 'obstacle' ? t('How an obstacle holds') : t('What is attached or painted');
     }
-    byId('roles').classList.toggle('idle', !['add', 'paint', 'obstacle'].includes(bench.tool));
+    byId('roles').classList.toggle('idle', !['add', 'paint', 'select', 'obstacle'].includes(bench.tool));
     byId<HTMLButtonElement>('undo').disabled = !bench.history.canUndo;
     byId<HTMLButtonElement>('redo').disabled = !bench.history.canRedo;
   };
@@ -222,6 +224,7 @@ function begin(): void {
   makeTools(bench);
   makeDialogs();
   makePanel(app, keeper);
+  new SelectionPanel(app);
   new ConnectionTable(app);
   new WhyPanel(app);
   new Sure(app);

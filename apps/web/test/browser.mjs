@@ -3,10 +3,11 @@
 //
 // What the tests of the page share: a headless Chromium, and the hands and eyes of a user.
 import { execFileSync } from 'node:child_process';
-import { existsSync, mkdtempSync } from 'node:fs';
+import { existsSync, mkdtempSync, readFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
+import { deflateRawSync } from 'node:zlib';
 import { chromium } from 'playwright-core';
 
 export const repository = fileURLToPath(new URL('../../../', import.meta.url));
@@ -40,18 +41,24 @@ export const newContext = (browser, options = {}) =>
     ...options,
   });
 
+/** The link of a scenario, as the page makes it. */
+export const linkOf = (name) => `#s=${deflateRawSync(JSON.stringify(JSON.parse(readFileSync(scenario(name), 'utf8')))).toString('base64url')}`;
+
+/** A page of a browser in which nothing is kept begins with a robot that breaks; `fragment: ''`: with its own first one. */
+const firstOf = (context, file) => (context || file !== pageFile ? '' : linkOf('arm_breaks_b'));
+
 /**
  * A page that has opened its first structure. Whatever it asks for beyond its own file, and every
  * fault in it, is listed in `faults`.
  */
-export async function openPage(browser, { fragment = '', file = pageFile, context, ...options } = {}) {
+export async function openPage(browser, { context, file = pageFile, fragment = firstOf(context, file), ...options } = {}) {
   const page = await openUnsettled(browser, { fragment, file, context, ...options });
   await settled(page);
   return page;
 }
 
 /** The same where there may be no robot to wait for. */
-export async function openUnsettled(browser, { fragment = '', file = pageFile, context, ...options } = {}) {
+export async function openUnsettled(browser, { context, file = pageFile, fragment = firstOf(context, file), ...options } = {}) {
   if (!existsSync(file)) {
     throw new Error(`${file} is not there: run ./dev page`);
   }

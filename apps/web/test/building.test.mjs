@@ -151,3 +151,20 @@ test('free faces are tinted by what would come of a module there', async () => {
   assert.ok(known.count > 30);
   assert.deepEqual(page.faults, []);
 });
+
+test('what is shown first holds; one more module, where the page asks for it, breaks it', async () => {
+  const page = await openPage(browser, { fragment: '' });
+  assert.equal(await verdict(page), 'safe');
+  assert.match(await page.innerText('#hint'), /^Will it hold one more\?/);
+  const tip = await page.evaluate(() => {
+    const { robot } = globalThis.holdfast.bench;
+    return Array.from({ length: robot.count }, (_, i) => robot.cellAt(i)).sort((a, b) => b[0] - a[0])[0];
+  });
+  await clickFace(page, tip, RIGHT);
+  assert.equal(await verdict(page), 'overload');
+  assert.ok(await page.isHidden('#hint'));
+  await page.click('#undo');
+  await settled(page);
+  assert.equal(await verdict(page), 'safe');
+  assert.deepEqual(page.faults, []);
+});

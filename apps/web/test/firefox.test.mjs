@@ -8,7 +8,7 @@ import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import puppeteer from 'puppeteer-core';
-import { pageFile, program, scenario } from './browser.mjs';
+import { linkOf, pageFile, program, scenario } from './browser.mjs';
 
 const WAIT = { timeout: 120_000 };
 
@@ -23,7 +23,7 @@ before(async () => {
   page.on('pageerror', (error) => faults.push(error.message));
   page.on('console', (message) => message.type() === 'error' && faults.push(message.text()));
   await page.setViewport({ width: 1200, height: 800 });
-  await page.goto(pathToFileURL(pageFile).href);
+  await page.goto(pathToFileURL(pageFile).href + linkOf('arm_breaks_b'));
   await page.waitForSelector('html.ready', WAIT);
   await settled();
 });
@@ -43,7 +43,7 @@ function essence(report) {
   return JSON.parse(JSON.stringify(report, known));
 }
 
-test('it shows the first robot and its verdict, with a picture', async () => {
+test('it shows a robot and its verdict, with a picture', async () => {
   assert.equal(await verdict(), 'overload');
   assert.match(await page.$eval('#chip-numbers', (numbers) => numbers.textContent), /load 1\.20/);
   const colours = await page.evaluate(() => {

@@ -7,13 +7,13 @@ import { readFileSync, readdirSync } from 'node:fs';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
-import { attach, cube, dropFile, launch, newContext, openExample, openPage, pageFile, repository, settled } from './browser.mjs';
+import { attach, cube, dropFile, launch, newContext, openExample, linkOf, openPage, pageFile, repository, settled } from './browser.mjs';
 
 let browser;
 before(async () => (browser = await launch()));
 after(() => browser.close());
 
-const openIn = (language, options = {}) => openPage(browser, { fragment: `?lang=${language}`, viewport: { width: 1200, height: 800 }, ...options });
+const openIn = (language, options = {}) => openPage(browser, { fragment: `?lang=${language}${linkOf('arm_breaks_b')}`, viewport: { width: 1200, height: 800 }, ...options });
 
 /**
  * Texts and attributes with a word in them that stands in no brackets. Numbers, cells, units, names of keys, axes and what
@@ -135,7 +135,7 @@ test('no text of other robots, of steps and of refusals does either', async () =
 
 test('a French reader has French words and numbers, and can have English', async () => {
   const context = await newContext(browser, { viewport: { width: 1200, height: 800 }, locale: 'fr-FR' });
-  const page = await openPage(browser, { context });
+  const page = await openPage(browser, { context, fragment: linkOf('arm_breaks_b') });
   assert.equal(await page.getAttribute('html', 'lang'), 'fr');
   assert.match(await page.innerText('#verdict-word'), /Surcharge\s+il casse/);
   assert.match(await page.innerText('#chip-numbers'), /charge 1,20 · marge 10,8 mm · 1 sur 14 cassent/);

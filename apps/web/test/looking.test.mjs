@@ -4,7 +4,7 @@
 // How the robot is looked at: sides, cuts, through its modules, before an audience.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { cube, dropFile, launch, openExample, openPage, pixels, settled } from './browser.mjs';
+import { cube, dropFile, launch, openExample, openPage, pixels, settled, verdict } from './browser.mjs';
 
 let browser;
 before(async () => (browser = await launch()));
@@ -262,5 +262,22 @@ test('a theme that was chosen holds against the system’s, in the picture too, 
   await page.emulateMedia({ colorScheme: 'light' });
   await settled(page);
   assert.deepEqual([await paper(), await ink()], light);
+  assert.deepEqual(page.faults, []);
+});
+
+test('?embed shows the picture and its verdict, and a way to the whole page', async () => {
+  const page = await openPage(browser, { fragment: '?embed', viewport: { width: 480, height: 320 } });
+  for (const part of ['.bar', 'aside', '#toolbar', '#hint']) {
+    assert.ok(await page.isHidden(part), part);
+  }
+  assert.equal(await page.isVisible('#verdict'), true);
+  assert.equal(await verdict(page), 'safe');
+  const canvas = await page.locator('#canvas').boundingBox();
+  assert.deepEqual([canvas.width, canvas.height], [480, 320]);
+  const before = await page.evaluate(() => globalThis.holdfast.bench.robot.count);
+  await page.mouse.click(240, 180);
+  assert.equal(await page.evaluate(() => globalThis.holdfast.bench.robot.count), before, 'a click only looks');
+  const href = await page.getAttribute('#embed-open', 'href');
+  assert.ok(href.startsWith('file:') && !href.includes('embed'));
   assert.deepEqual(page.faults, []);
 });

@@ -69,7 +69,7 @@ const look = (page) =>
       material: { ...surroundings.material, ...material }, modules, planned,
     };
     const looks = [...view.drawn].map((slot, i) => [
-      String(app.robot.cellAt(slot)), [...view.modules.tints.slice(3 * i, 3 * i + 3)], view.modules.patterns[i],
+      String(app.robot.cellAt(slot)), [...view.modules.tints.slice(3 * i, 3 * i + 3)], view.modules.patterns[i] % 16,
     ]);
     const rows = [...one('figures').children].map((row) => row.innerText);
     const fields = [...document.querySelectorAll('#surroundings input, #material input')]
@@ -317,6 +317,30 @@ const DEEDS = {
     await page.waitForFunction(() => !document.querySelector('dialog[open]'));
     await settled(page);
   },
+  /** Some modules, and something that is done with all of them. What is selected has frames, nothing else has. */
+  async select(page, { pick, chance }) {
+    const deed = pick(['move', 'move', 'copy', 'turn', 'mirror-x', 'mirror-y', 'fill', 'load', 'remove', 'connected', 'layer', 'none']);
+    await page.evaluate(([from, size, side]) => {
+      const { bench } = globalThis.holdfast;
+      bench.setTool('select');
+      const cells = Array.from({ length: bench.robot.count }, (_, slot) => bench.robot.cellAt(slot));
+      bench.selection.set(cells.slice(from * cells.length, from * cells.length + 1 + 3 * size));
+      const { options } = document.getElementById('select-direction');
+      document.getElementById('select-direction').selectedIndex = Math.floor(side * options.length);
+    }, [chance(), chance(), chance()]);
+    await press(page, `select-${deed}`);
+    await settled(page);
+    const [framed, chosen] = await page.evaluate(() => {
+      const { app, bench } = globalThis.holdfast;
+      const isFramed = (_, i) => app.view.modules.patterns[i] >= 16;
+      const textOf = (cell) => String(cell);
+      const seen = [...app.view.drawn].filter(isFramed).map((slot) => textOf(app.robot.cellAt(slot)));
+      const drawn = new Set([...app.view.drawn].map((slot) => textOf(app.robot.cellAt(slot))));
+      return [seen.sort(), app.mode === 'build' ? bench.selection.cells.map(textOf).filter((cell) => drawn.has(cell)).sort() : []];
+    });
+    assert.deepEqual(framed, chosen, `${deed}: frames`);
+    return deed;
+  },
   worst: (page) => page.evaluate(() => globalThis.holdfast.app.seeWorst()),
   async colours(page, { pick }) {
     await page.selectOption('#scale', pick(['paper', 'cividis']));
@@ -325,7 +349,7 @@ const DEEDS = {
 };
 
 /** How often each is done. */
-const WEIGHTS = { edit: 8, put: 2, 'take away': 2, type: 8, undo: 4, redo: 2, record: 2, open: 2, simulate: 3, stages: 4, limit: 2, collapse: 2, load: 2, obstacle: 2, deform: 3, remedy: 2, lose: 2 };
+const WEIGHTS = { edit: 8, put: 2, 'take away': 2, type: 8, undo: 4, redo: 2, record: 2, open: 2, simulate: 3, stages: 4, limit: 2, collapse: 2, load: 2, obstacle: 2, deform: 3, remedy: 2, lose: 2, select: 3 };
 const CHOSEN = process.env.HOLDFAST_DEEDS?.split(',') ?? Object.keys(DEEDS);
 const NAMES = CHOSEN.flatMap((name) => Array(WEIGHTS[name] ?? 1).fill(name));
 

@@ -191,4 +191,9 @@ export const GALLERY: ExampleGroup[] = [
   { title: 'More to try', examples: MADE },
 ];
 
-export const FIRST_EXAMPLE = scenario('arm_breaks_b');
+/** The strong arm with nothing planned: it holds one more module at its sides, and breaks by one at its tip. */
+export const FIRST_EXAMPLE: Example = {
+  ...scenario('arm_breaks_b'),
+  name: 'arm',
+  source: () => JSON.stringify({ ...SCENARIOS.arm_breaks_b, name: 'arm', planned: undefined, known_answer: undefined }),
+};

@@ -12,6 +12,12 @@ type Step = { label: string } & (
 
 export type Change = Step['what'];
 
+/** What a cell is to have in it; undefined: nothing. */
+export interface Wanted {
+  cell: Cell;
+  role: Role | undefined;
+}
+
 const isSame = (a: unknown, b: unknown) => a === b || JSON.stringify(a) === JSON.stringify(b);
 
 /** The robot on the page and everything that was done to it. Tells its listener of every change. */
@@ -27,18 +33,19 @@ export class History {
   ) {}
 
   /**
-   * Sets cells to a role, or empties them, and settings, all in one step; what is so already is left out.
+   * Sets cells each to a role, or empties them, and settings, all in one step; what is so already is left out.
    * What a removed module had of its own goes with it.
    */
-  edit(label: string, cells: readonly Cell[], role: Role | undefined, settings: Partial<Settings> = {}): boolean {
-    const changes = cells
-      .map((cell) => ({ cell, before: this.robot.role(cell), after: role }))
+  edit(label: string, wanted: readonly Wanted[], settings: Partial<Settings> = {}): boolean {
+    const changes = wanted
+      .map(({ cell, role }) => ({ cell, before: this.robot.role(cell), after: role }))
       .filter(({ before, after }) => before !== after);
     const { supportZ, material, surroundings } = this.robot;
     const before = { supportZ, material, surroundings };
     const after = { ...before, ...settings };
-    if (role === undefined && changes.length > 0) {
-      after.surroundings = withoutModules(after.surroundings, changes.map(({ cell }) => cell));
+    const emptied = changes.filter((change) => change.after === undefined);
+    if (emptied.length > 0) {
+      after.surroundings = withoutModules(after.surroundings, emptied.map(({ cell }) => cell));
     }
     const isOther = (Object.keys(before) as (keyof Settings)[]).some((key) => !isSame(before[key], after[key]));
     if (changes.length > 0 || isOther) {
@@ -49,7 +56,7 @@ export class History {
 
   /** Gives the robot another material, another ground, other surroundings. */
   configure(label: string, settings: Partial<Settings>): void {
-    this.edit(label, [], undefined, settings);
+    this.edit(label, [], settings);
   }
 
   /** Puts another robot in place of this one; the empty page at the beginning is not kept. */

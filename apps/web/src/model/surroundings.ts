@@ -173,6 +173,17 @@ export function withoutModules(surroundings: Surroundings, cells: readonly Cell[
   return tidied({ ...surroundings, loads: others(loads, gone), modules: others(modules, gone) });
 }
 
+/** What modules have of their own goes with them to other cells, or is there twice if they are copied. */
+export function withOwnMoved(surroundings: Surroundings, cells: readonly Cell[], to: readonly Cell[], isCopied: boolean): Surroundings {
+  const targets = new Map(cells.map((cell, i) => [String(cell), to[i]]));
+  const left = new Set(isCopied ? [] : targets.keys());
+  const moved = <Entry extends { cell: Cell }>(list: readonly Entry[] = []) => [
+    ...others(list, left),
+    ...list.filter(({ cell }) => targets.has(String(cell))).map((entry) => ({ ...entry, cell: targets.get(String(entry.cell))! })),
+  ];
+  return tidied({ ...surroundings, loads: moved(surroundings.loads), modules: moved(surroundings.modules) });
+}
+
 /** What a load tool puts on a module. */
 export interface Burden {
   /** Undefined: that of its kind or of the material. */

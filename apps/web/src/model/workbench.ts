@@ -1,15 +1,16 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 import { ROLE_NAMES, Role, type Cell } from './cell';
-import { History, type Change } from './history';
+import { History, type Change, type Wanted } from './history';
 import { EditedRobot, type Settings } from './edited_robot';
 import { latticeOf } from './lattice';
+import { Selection } from './selection';
 import {
   isNothing, tidied, withBurden, withObstacles, withoutObstacle, type Burden, type Hold, type Obstacle, type Surroundings,
 } from './surroundings';
 import { t, word } from '../texts';
 
-export type Tool = 'look' | 'add' | 'remove' | 'paint' | 'obstacle' | 'load';
+export type Tool = 'look' | 'select' | 'add' | 'remove' | 'paint' | 'obstacle' | 'load';
 
 /** No more modules than this in one row. */
 export const ROW_MAX = 100;
@@ -23,7 +24,11 @@ export const mayBe = ({ robot, tool }: Workbench, cell: Cell) =>
 
 /** What is built, with which tool and where: the page's state, without its picture and the answer. */
 export class Workbench {
-  readonly history = new History(new EditedRobot(), (what) => this.robotListeners.forEach((tell) => tell(what)));
+  readonly history = new History(new EditedRobot(), (what) => {
+    this.selection.follow();
+    this.robotListeners.forEach((tell) => tell(what));
+  });
+  readonly selection = new Selection(this);
   tool: Tool = 'add';
   /** Of the modules that are attached or painted. */
   role = Role.kExisting;
@@ -43,7 +48,7 @@ export class Workbench {
   readonly toolListeners: (() => void)[] = [];
 
   /** `refuse` hears why an edit was not done. */
-  constructor(private readonly refuse: (reason: string) => void) {}
+  constructor(readonly refuse: (reason: string) => void) {}
 
   get robot(): EditedRobot {
     return this.history.robot;
@@ -55,9 +60,13 @@ export class Workbench {
     this.toolListeners.forEach((tell) => tell());
   }
 
-  /** Another role to attach, or to paint if that is the tool. */
+  /** Another role to attach, or to paint if that is the tool; what is selected takes it at once. */
   setRole(role: Role): void {
-    this.setTool(this.tool === 'paint' ? 'paint' : 'add', role);
+    const isKept = this.tool === 'paint' || this.tool === 'select';
+    this.setTool(isKept ? this.tool : 'add', role);
+    if (this.tool === 'select') {
+      this.paint(this.selection.cells);
+    }
   }
 
   setHold(hold: Hold): void {
@@ -86,11 +95,17 @@ export class Workbench {
 
   /** Sets cells to a role, or empties them. */
   edit(label: string, cells: readonly Cell[], role: Role | undefined, surroundings?: Surroundings): void {
+    this.change(label, cells.map((cell) => ({ cell, role })), surroundings);
+  }
+
+  /** The same with a role for each cell; false if it was not done. */
+  change(label: string, wanted: readonly Wanted[], surroundings?: Surroundings): boolean {
     performance.mark('edit');
     try {
-      this.history.edit(label, cells, role, surroundings && { surroundings });
+      return this.history.edit(label, wanted, surroundings && { surroundings });
     } catch (error) {
       this.refuse(error instanceof Error ? error.message : String(error));
+      return false;
     }
   }
 
@@ -107,7 +122,6 @@ export class Workbench {
     if (cells.length === 0 || this.refusesNow()) {
       return;
     }
-    const role = t(ROLE_NAMES[this.role]);
     if (this.tool === 'add') {
       const free = cells.filter((cell) => !this.robot.has(cell) && !this.robot.obstacles.has(cell));
       this.edit(t('attaching {0}', cells.length), free, this.role);
@@ -118,7 +132,15 @@ export class Workbench {
     } else if (this.tool === 'load') {
       this.load(cells.filter((cell) => this.robot.has(cell)));
     } else if (this.tool === 'paint') {
-      this.edit(t('painting {0} {1}', cells.length, role), cells.filter((cell) => this.robot.has(cell)), this.role);
+      this.paint(cells.filter((cell) => this.robot.has(cell)));
+    } else if (this.tool === 'select') {
+      this.selection.toggle(cells);
+    }
+  }
+
+  private paint(cells: readonly Cell[]): void {
+    if (cells.length > 0 && !this.refusesNow()) {
+      this.edit(t('painting {0} {1}', cells.length, t(ROLE_NAMES[this.role])), cells, this.role);
     }
   }
 
@@ -142,7 +164,7 @@ export class Workbench {
     }
   }
 
-  private load(cells: readonly Cell[]): void {
+  load(cells: readonly Cell[]): void {
     const { burden } = this;
     const label = isNothing(burden) ? t('taking the load off {0}', cells.length) : t('loading {0}', cells.length);
     this.history.configure(label, { surroundings: withBurden(this.robot.surroundings, cells, burden) });

@@ -10,7 +10,8 @@ import { t, type Text } from '../texts';
 /** Every key and what it does; the help shows the same list. */
 export const KEYS: readonly [keys: string, text: Text][] = [
   ['A  D  P  V', 'tools: attach, remove, paint, look only'],
-  ['O  L', 'tools: obstacles, loads'],
+  ['O  L  G', 'tools: obstacles, loads, select'],
+  ['Ctrl A  Delete', 'select all, remove what is selected'],
   ['1  2  3', 'what is attached or painted: existing, planned, fixed; an obstacle: 1 contact, 2 bonded'],
   ['← → ↑ ↓', 'move the cursor; page up and page down: higher, lower'],
   ['Enter', 'use the tool at the cursor; Shift with an arrow: draw a row'],
@@ -26,7 +27,7 @@ export const KEYS: readonly [keys: string, text: Text][] = [
   ['T', 'let it topple or break, if it does; put it together again'],
   ['K  ,  .', 'the robot’s own computation: play or pause, step back, step on'],
   ['S  U  R', 'steps: play or pause, to the first unsafe stage, record'],
-  ['Esc', 'put the cursor away, let pinned numbers go'],
+  ['Esc', 'put the cursor away, let pinned numbers and the selection go'],
   ['?', 'this page'],
 ];
 
@@ -55,7 +56,7 @@ export function listenToKeys(app: App, actions: Record<string, () => void>): voi
       event.preventDefault();
       return;
     }
-    if (event.key === 'Escape' && app.unpin()) {
+    if ((event.key === 'Escape' && (app.unpin() || app.bench.selection.clear())) || onSelection(app, event)) {
       event.preventDefault();
       return;
     }
@@ -66,6 +67,22 @@ export function listenToKeys(app: App, actions: Record<string, () => void>): voi
       event.preventDefault();
     }
   });
+}
+
+/** What is selected is all or nothing to these keys; the tool is in hand. */
+function onSelection({ bench }: App, event: KeyboardEvent): boolean {
+  if (bench.tool !== 'select' || (event.target as HTMLElement).matches(CONTROLS)) {
+    return false;
+  }
+  if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === 'a') {
+    bench.selection.all();
+    return true;
+  }
+  const removes = (event.key === 'Delete' || event.key === 'Backspace') && bench.selection.cells.length > 0;
+  if (removes) {
+    bench.selection.remove();
+  }
+  return removes;
 }
 
 /** Keys of the cursor count only where the robot has the focus. */
@@ -140,7 +157,7 @@ function letter(bench: Workbench, actions: Record<string, () => void>, key: stri
     bench.setRole(roles[key]);
     return true;
   }
-  const tools = { a: 'add', d: 'remove', p: 'paint', v: 'look', o: 'obstacle', l: 'load' } as const;
+  const tools = { a: 'add', d: 'remove', p: 'paint', v: 'look', o: 'obstacle', l: 'load', g: 'select' } as const;
   const lower = key.toLowerCase();
   if (lower in tools) {
     bench.setTool(tools[lower as keyof typeof tools]);

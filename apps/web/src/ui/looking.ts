@@ -51,6 +51,7 @@ export function makeLooking(app: App): Record<string, () => void> {
   }
   chooseTheme(byId('theme'));
   byId('present-end').onclick = presenting;
+  embed(app);
   return {
     x: toggle('xray', (isOn) => app.lookThrough(isOn)),
     m: presenting,
@@ -60,6 +61,17 @@ export function makeLooking(app: App): Record<string, () => void> {
     8: () => seeFrom('right'),
     9: () => seeFrom('top'),
   };
+}
+
+/** In another page (`?embed`): the picture and its verdict, to turn and to point at, and a way to the whole page. */
+function embed({ bench }: App): void {
+  const whole = new URL(location.href);
+  if (whole.searchParams.has('embed')) {
+    whole.searchParams.delete('embed');
+    byId<HTMLAnchorElement>('embed-open').href = whole.href;
+    document.body.classList.add('embedded');
+    bench.setTool('look');
+  }
 }
 
 /** For an audience: the picture alone, its verdict and labels twice as large. */

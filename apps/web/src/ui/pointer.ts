@@ -7,7 +7,7 @@ import type { App } from './app';
 
 /**
  * Mouse, pen and fingers on the canvas. A click uses the tool; a drag that begins on the robot draws
- * a row or a stroke; any other drag turns the view. Fingers turn the view at once and draw after
+ * a row or a stroke, or selects a box; any other drag turns the view. Fingers turn the view at once and draw after
  * a long press.
  */
 
@@ -94,6 +94,8 @@ export function listenToPointer(app: App): void {
       pinAt(app, ended.hit);
     } else if (ended?.isClick && isBent(app)) {
       app.straighten();
+    } else if (ended && app.bench.tool === 'select' && !app.isExhibiting) {
+      select(app, ended, event);
     } else if (ended?.draws || ended?.isClick) {
       app.bench.use(ended.draws ? ended.cells : cellsOf(app, ended.hit));
       app.whereNext.preview([]);
@@ -124,6 +126,18 @@ export function listenToPointer(app: App): void {
 function pinAt(app: App, hit: Hit | undefined): void {
   if (!app.unpin() && hit?.what === 'module' && !app.isToppled) {
     app.pin(hit.cell, nearSeam(app.robot, hit));
+  }
+}
+
+/** A click selects a module alone, with Shift or Ctrl or a finger one more or one less; beside the robot nothing. */
+function select({ bench: { selection } }: App, { hit, draws, isClick, cells }: Gesture, event: PointerEvent): void {
+  const adds = event.shiftKey || event.ctrlKey || event.metaKey || event.pointerType === 'touch';
+  if (draws && !isClick) {
+    selection.box(cells);
+  } else if (isClick && hit?.what !== 'module') {
+    selection.clear();
+  } else if (isClick) {
+    adds ? selection.toggle([hit!.cell]) : selection.set([hit!.cell]);
   }
 }
 
@@ -191,7 +205,10 @@ function draw(app: App, gesture: Gesture, x: number, y: number): void {
     return;
   }
   const hit = pick(robot, ray, app.view.section);
-  if (hit && hit.what !== 'ground' && !gesture.cells.some((other) => String(other) === String(hit.cell))) {
+  if (hit?.what === 'module' && tool === 'select') {
+    gesture.cells = [cell, hit.cell];
+    app.view.point(gesture.cells.map((one) => robot.slot(one)).filter((slot) => slot !== undefined));
+  } else if (hit && hit.what !== 'ground' && !gesture.cells.some((other) => String(other) === String(hit.cell))) {
     gesture.cells.push(hit.cell);
     app.view.point(gesture.cells.map((one) => robot.slot(one)).filter((slot) => slot !== undefined));
   }

@@ -18,6 +18,7 @@ export const enum Pattern {
   kFixed = 2,
   kBroken = 4,
   kPointed = 8,
+  kSelected = 16,
 }
 
 /** How much of the picture modules are that connections are seen through. */
@@ -311,6 +312,11 @@ vec3 colourOf(Spot spot) {
   float visible = clamp(1.5 * width / pixel, 0.25, 1.0);
   float edge = 1.0 - smoothstep(width, width + pixel, spot.border);
   colour = mix(colour, rimColour, edge * dash * visible);
+  if (has(16.0)) {
+    float frame = 1.0 - smoothstep(0.1, 0.1 + pixel, spot.border);
+    float bead = abs(fract(spot.along * 4.0) - 0.5);
+    colour = mix(mix(colour, vec3(1.0), 0.25), pointed, frame * smoothstep(0.2 - 2.0 * pixel, 0.2 + 2.0 * pixel, bead));
+  }
   if (has(8.0)) {
     float rim = 1.0 - smoothstep(0.06, 0.06 + pixel, spot.border);
     colour = mix(mix(colour, vec3(1.0), 0.18), pointed, rim);

@@ -129,6 +129,7 @@ export class RobotView {
   losses?: Losses;
   /** Slots that stand out; undefined: all are alike. */
   private lit?: ReadonlySet<number>;
+  private selected: ReadonlySet<number> = new Set();
 
   constructor(private readonly stage: Stage) {
     this.cursor.renderOrder = 5;
@@ -183,6 +184,7 @@ export class RobotView {
       this.modules.patterns[i] =
         (isPlanned ? Pattern.kPlanned : 0) +
         (role === Role.kFixed ? Pattern.kFixed : 0) +
+        (this.selected.has(slot) ? Pattern.kSelected : 0) +
         (isBroken && !own && this.subject === 'modules' && !this.losses ? Pattern.kBroken : 0);
     });
     this.paintSeams();
@@ -285,6 +287,15 @@ export class RobotView {
 
   private lossColour(slot: number): Rgb | undefined {
     return this.losses && (this.losses.modules.has(slot) ? brokenColour(this.scale) : NEUTRAL);
+  }
+
+  /** Frames around modules, by slot. */
+  select(slots: ReadonlySet<number>): void {
+    const isSame = slots.size === this.selected.size && [...slots].every((slot) => this.selected.has(slot));
+    this.selected = slots;
+    if (!isSame) {
+      this.paint();
+    }
   }
 
   /** Lets modules stand out, by slot. */
