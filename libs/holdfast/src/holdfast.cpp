@@ -133,9 +133,9 @@ base::Result<io::Document> generate(std::string_view family, std::size_t size) {
   if (size < found->size_min || count > model::kModuleCountMax) {
     return base::Error{.code = base::ErrorCode::kBadInput,
                        .message = fmt::format(
-                           "the size {} is not allowed for {}: it is {} or more, and at most {} "
-                           "modules in all",
-                           size, family, found->size_min, model::kModuleCountMax)};
+                           "expected a size of {} or more for {}, and at most {} modules in all; "
+                           "found {}",
+                           found->size_min, family, model::kModuleCountMax, size)};
   }
   io::Document document;
   document.name = fmt::format("{} {}", family, size);

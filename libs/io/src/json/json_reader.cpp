@@ -31,6 +31,7 @@ class JsonReader {
   void read_lattice(const Json& value, const JsonPlace& place, const ReadOptions& options);
   bool allows(const JsonPlace& place);
   void read_member(const std::string& key, const Json& value, const JsonPlace& place);
+  void note_unknown_member(const JsonPlace& place);
   void read_material(const Json& value, const JsonPlace& place);
   void read_known_answer(const Json& value, const JsonPlace& place);
   void read_visiblesim(const Json& value, const JsonPlace& place);
@@ -195,7 +196,23 @@ void JsonReader::read_member(const std::string& key, const Json& value, const Js
   } else if (key == "visiblesim") {
     read_visiblesim(value, place);
   } else if (key != "format" && key != "version" && key != "$schema") {
-    reading_.note_unknown_key(place, is_extended_ ? Names(kAllTopKeys) : Names(kTopKeys));
+    note_unknown_member(place);
+  }
+}
+
+/// Numbers of the material are often written beside it.
+void JsonReader::note_unknown_member(const JsonPlace& place) {
+  const Names known = is_extended_ ? Names(kAllTopKeys) : Names(kTopKeys);
+  const Names material = material_keys(is_extended_);
+  const auto same = known_spelling(place.key, material);
+  const auto meant = same ? same : near_miss(place.key, material);
+  if (meant && !reading_.allows_unknown && !place.key.starts_with("x-") &&
+      !near_miss(place.key, known)) {
+    reading_.fail(place,
+                  fmt::format("the key {} is unknown here: did you mean '{}' in \"material\"?",
+                              excerpt(place.key), *meant));
+  } else {
+    reading_.note_unknown_key(place, known);
   }
 }
 
