@@ -49,6 +49,7 @@ expect_line out '^              with a prop in \(4,0,1\), below a module: load r
 expect_line out '^              with connections 1[.]2[0-9] times as strong$'
 expect_exit 1 check crane.json --remedies --json crane_report.json
 expect_line crane_report.json '"remedies"'
+expect_refusal '/format: expected a structure, found a report' crane_report.json
 expect_exit 1 check crane.json crane.json --remedies
 [ "$(grep -c '^  would hold  ' out)" -eq 2 ] || fault "not the remedies of both: $(cat out)"
 expect_exit 0 check "$safe" --remedies

@@ -276,6 +276,9 @@ int run(const OrderArguments& options) {
     throw UsageError(options.source.empty() ? "--reach surface requires --source CELL"
                                             : "--source requires --reach surface");
   }
+  if (options.reach == "free" && !options.avoid.empty()) {
+    throw UsageError("--avoid requires --reach line or surface: free modules have no ways to bar");
+  }
   const auto read = read_with_notes(options.target, options.reading);
   if (!read) {
     return fail(read.error(), options.target);

@@ -335,7 +335,7 @@ std::string error_json(const base::Error& error, const io::ReportOrigin& origin)
 std::string describe(const base::Error& error, std::string_view file) {
   std::string line = io::one_line(file);
   for (const std::string& part : {error.where, error.message}) {
-    if (!part.empty()) {
+    if (!part.empty() && part != file) {
       line += (line.empty() ? "" : ": ") + part;
     }
   }

@@ -11,6 +11,7 @@
 #include "holdfast/io/document.hpp"
 #include "holdfast/io/goal_shape.hpp"
 #include "holdfast/io/lattice_names.hpp"
+#include "holdfast/io/report_head.hpp"
 #include "json/json_connectors.hpp"
 #include "json/json_extension.hpp"
 #include "json/json_shapes.hpp"
@@ -100,7 +101,10 @@ bool JsonReader::read_heading(const Json& root, const JsonPlace& place,
       reading_.refuse(value_of(key), place.at(key), expected);
     }
   };
-  if (format != kJsonFormatName) {
+  if (format == kReportFormat) {
+    reading_.fail(place.at("format"),
+                  "expected a structure, found a report: give the file that was judged");
+  } else if (format != kJsonFormatName) {
     expect("format", fmt::format("\"{}\"", kJsonFormatName));
   } else if (version.is_number() && version.get<double>() > kJsonVersionMax) {
     reading_.fail(
