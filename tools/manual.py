@@ -191,11 +191,15 @@ def whole_page(program, summary, pages, version, other):
 
 
 def checker_page(help_text, version):
-    usage, _, rest = help_text.partition('\n')
-    usage = usage.removeprefix('usage: ')
+    """Its help is paragraphs, the later ones with a heading each."""
+    usage, summary, *parts = help_text.strip().split('\n\n')
     text = roff_head(CHECKER, version, 'prove a certificate of holdfast again')
-    text += f'.SH SYNOPSIS\n{roff(usage)}\n'
-    return text + f'.SH DESCRIPTION\n{roff(rest.strip())}\n.SH SEE ALSO\n.BR holdfast (1)\n'
+    text += f'.SH SYNOPSIS\n.B {roff(usage.removeprefix("usage: "))}\n'
+    text += f'.SH DESCRIPTION\n{roff(summary)}\n'
+    for part in parts:
+        heading, _, lines = part.partition(':\n')
+        text += roff_section(heading.upper(), roff_preformatted(lines))
+    return text + '.SH SEE ALSO\n.BR holdfast (1)\n'
 
 
 # Completions.

@@ -6,6 +6,7 @@
 - the documents of docs/, links out of docs/ turned into names of files
 - index.md and a page for each kind of document, from SECTIONS
 - commands.md: what --help says of every command; reports.md: the keys of docs/schemas
+- gallery.md: twenty robots with their pictures
 - cpp_api.md and python_api.md: the facade's names, from Doxygen's XML, and the package's
 
 Every document of docs/ has to be in SECTIONS, once.
@@ -16,11 +17,13 @@ import shutil
 import subprocess
 import sys
 
+from gallery_page import lay_gallery
 from reports_page import reports_page
 
 SECTIONS = [
     ('Tutorials', 'From nothing to an answer, step by step.',
-     ['first_robot', 'first_plan', 'bring_your_file', 'python_examples', 'tour', 'porting']),
+     ['first_robot', 'first_plan', 'bring_your_file', 'python_examples', 'tour', 'gallery',
+      'porting']),
     ('How to', 'One task each.',
      ['install', 'python', 'serve', 'page', 'visiblesim', 'firmware', 'instrument', 'cluster']),
     ('Reference', 'What there is, complete.',
@@ -130,6 +133,7 @@ def main():
     (folder / 'reports.md').write_text(reports_page(repository / 'docs/schemas'))
     (folder / 'cpp_api.md').write_text(CPP_PAGE)
     (folder / 'python_api.md').write_text(PYTHON_PAGE)
+    lay_gallery(repository, program, folder)
     lay_sections(folder)
 
 

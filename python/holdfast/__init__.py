@@ -17,7 +17,7 @@ from ._answers import Moves, Order, Outcome, Places, Steps
 from ._core import Error
 from ._distributed import Run
 from ._failures import Cascade, Fit, Fitted, LoseOne, Reliability, fit
-from ._figures import FileAbsent
+from ._figures import FileAbsent, RobotWarning
 from ._many import check_many, table
 from ._page import PageNotFound
 from ._pictures import animate, plot_order, plot_steps
@@ -27,14 +27,15 @@ from ._report import Remedies, Report, Timings
 from ._robot import Robot, families, foreign_formats, generate, load
 from ._verdict import Stage, Verdict
 
-Error.__module__ = PageNotFound.__module__ = FileAbsent.__module__ = 'holdfast'
+Error.__module__ = PageNotFound.__module__ = 'holdfast'
+FileAbsent.__module__ = RobotWarning.__module__ = 'holdfast'
 Error.__doc__ = 'A robot, a file or an option is not as it may be; one line says what and where.'
 
 __version__ = _core.version()
 
 __all__ = ['Cascade', 'Error', 'FileAbsent', 'Fit', 'Fitted', 'LoseOne', 'Moves', 'Order',
            'Outcome', 'PageNotFound', 'Places', 'PlanLosses', 'PlanQuestions', 'PlanReliability',
-           'Reliability', 'Remedies', 'Report', 'Robot', 'Run', 'Stage',
-           'Steps', 'Timings', 'Verdict', 'animate', 'check_many', 'families', 'fit',
+           'Reliability', 'Remedies', 'Report', 'Robot', 'RobotWarning', 'Run', 'Stage', 'Steps',
+           'Timings', 'Verdict', 'animate', 'check_many', 'families', 'fit',
            'foreign_formats', 'generate', 'load', 'move', 'next_places', 'order', 'plot_order',
            'plot_steps', 'robots', 'steps', 'table']

@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Optional, Union
+from typing import Optional, Protocol, Union, runtime_checkable
 
 from . import _core
 
@@ -15,6 +15,17 @@ Size = Union[int, tuple[int, int], None]
 """A width, or a width and a height, in pixels."""
 View = Union[str, tuple[float, float]]
 """``iso``, ``front``, ``side``, ``top``, or azimuth and elevation of the eye, in degrees."""
+
+
+@runtime_checkable
+class Readable(Protocol):
+    """A file object, of text or of bytes."""
+
+    def read(self) -> Union[str, bytes]: ...
+
+
+class RobotWarning(UserWarning):
+    """What a reader wants its user to know; `Robot.warnings` has it, too."""
 
 
 class FileAbsent(_core.Error, FileNotFoundError):

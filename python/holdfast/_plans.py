@@ -11,17 +11,17 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 from . import _core
 from ._answers import Moves, Order, Places, Steps
 from ._figures import FileAbsent, Path
-from ._given import Cell, Cells
+from ._given import Cell, Cells, reading
 from ._plan_failures import PlanQuestions, asked_of
 from ._progress import Progress, told
-from ._robot import Robot
+from ._robot import Robot, read_robot
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
 
-def _robot(source: Union[Robot, Path]) -> Robot:
-    return source if isinstance(source, Robot) else Robot.from_file(source)
+def _robot(source: Union[Robot, Path], unsaid: Optional[str] = None) -> Robot:
+    return source if isinstance(source, Robot) else read_robot(source, reading(), unsaid)
 
 
 def next_places(robot: Union[Robot, Path], *, threads: int = 0, memory: float = 4,
@@ -72,7 +72,7 @@ def steps(robot: Union[Robot, Path], plan: Optional[Sequence[Mapping[str, Any]]]
     >>> steps(tower, [{'attach': [[0, 0, 1]]}], scatter=0.1, lose_one=True).lose_one.holds_all
     False
     """
-    start = _robot(robot)
+    start = _robot(robot, unsaid='holdfast steps judges all')
     if plan is not None:
         start = start.with_steps(plan)
     if safety_factor is not None:

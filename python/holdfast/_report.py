@@ -323,7 +323,7 @@ class Report(Judged, Drawn):
 
     def show(self, *, height: int = 640) -> None:
         """Shows the page, where the robot can be turned and changed: in a notebook in the cell's
-        output, elsewhere in the browser."""
+        output, which takes 2 MB there, elsewhere in the browser."""
         from ._page import show
         show(self, height)
 
@@ -339,10 +339,6 @@ class Report(Judged, Drawn):
         need('vtkmodules', 'report.to_vtk()')
         from ._vtk import to_vtk
         return to_vtk(self)
-
-    def _repr_html_(self) -> str:
-        from ._page import frame
-        return frame(self)
 
     def save_json(self, path: Path) -> None:
         """Writes the report, whole or not at all."""

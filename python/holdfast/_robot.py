@@ -6,6 +6,8 @@ from __future__ import annotations
 import json
 import math
 import os
+import pathlib
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Optional, Union
 
@@ -16,7 +18,7 @@ from . import _core, _geometry, _maker
 from ._answers import Places
 from ._distributed import Run, events_of, find_image, noise_of
 from ._failures import Cascade, LoseOne, cascade_of, lose_one_of
-from ._figures import Path, read_from
+from ._figures import Path, Readable, RobotWarning, read_from
 from ._given import (Cell, Cells, Table, cell_of, counted, floats, head_of, json_of, level, listed,
                      load_list, obstacle_list, own_parts, reading)
 from ._plan_failures import PlanQuestions, asked_of
@@ -93,6 +95,9 @@ class Robot:
                  joined: Optional[str] = None, gravity: Optional[Sequence[float]] = None,
                  material: Optional[Mapping[str, Any]] = None, robot: Optional[str] = None,
                  steps: Optional[Sequence[Any]] = None, name: str = '') -> None:
+        if isinstance(cells, (str, bytes, os.PathLike)):
+            raise _core.Error('cells: expected an (n, 3) array of integers, a cell in each row, '
+                              f'found {cells!r}; holdfast.load reads files')
         cells, planned, fixed = listed(cells), listed(planned), listed(fixed)
         head = head_of({'lattice': lattice and _core.lattice_name(lattice),
                         'obstacles': obstacle_list(obstacles), 'kinds': kinds,
@@ -110,20 +115,19 @@ class Robot:
         return robot
 
     @classmethod
-    def from_file(cls, path: Path, *, lattice: str = '', robot: str = '',
+    def from_file(cls, path: Union[Path, Readable], *, lattice: str = '', robot: str = '',
                   allow_unknown: bool = False, supports: Union[int, str, None] = None,
                   pitch: Optional[float] = None) -> Robot:
         """Reads VisibleSim XML, holdfast JSON, version 1 or 2, a binary structure, or a file of
-        another program: `foreign_formats` lists them.
+        another program: `foreign_formats` lists them. `path` may be a file object. What is in
+        `warnings` is a `RobotWarning` as well.
 
         `lattice` and `robot` say what the file leaves open. A key of holdfast JSON that is unknown
         is an error, unless it begins with ``x-``; with `allow_unknown` it is ignored and stands in
         `warnings`. `supports` is the layer z whose modules rest on the ground, or ``lowest``,
         whatever the file says; `pitch` the edge of a module in the unit of a mesh.
         """
-        with read_from(path):
-            return cls._of(_core.Structure.load_file(
-                path, reading(lattice, robot, allow_unknown, supports, pitch)))
+        return read_robot(path, reading(lattice, robot, allow_unknown, supports, pitch))
 
     @classmethod
     def from_text(cls, text: str, *, name: str = '', lattice: str = '', robot: str = '',
@@ -572,11 +576,38 @@ class Robot:
 _maker.robots_are(Robot._of)
 
 
-def load(path: Path, *, lattice: str = '', robot: str = '', allow_unknown: bool = False,
-         supports: Union[int, str, None] = None, pitch: Optional[float] = None) -> Robot:
+def _text_of(file: Readable) -> tuple[str, str]:
+    """What is in a file object, and its name without ending."""
+    name = getattr(file, 'name', '')
+    content = file.read()
+    if not isinstance(content, str):
+        try:
+            content = content.decode()
+        except UnicodeDecodeError:
+            raise _core.Error('expected text in UTF-8, found other bytes; what is no text is read '
+                              'by its path') from None
+    return content, pathlib.Path(name).stem if isinstance(name, str) else ''
+
+
+def read_robot(source: Union[Path, Readable], how: dict[str, Any],
+               unsaid: Optional[str] = None) -> Robot:
+    """Reads a robot, and warns of what its reader notes, but for notes that `unsaid` is in."""
+    if isinstance(source, Readable):
+        robot = Robot._of(_core.Structure.load_text(*_text_of(source), how))
+    else:
+        with read_from(source):
+            robot = Robot._of(_core.Structure.load_file(source, how))
+    for text in robot.warnings:
+        if unsaid is None or unsaid not in text:
+            warnings.warn(text, RobotWarning, stacklevel=3)
+    return robot
+
+
+def load(path: Union[Path, Readable], *, lattice: str = '', robot: str = '',
+         allow_unknown: bool = False, supports: Union[int, str, None] = None,
+         pitch: Optional[float] = None) -> Robot:
     """Reads a robot, see `Robot.from_file`."""
-    return Robot.from_file(path, lattice=lattice, robot=robot, allow_unknown=allow_unknown,
-                           supports=supports, pitch=pitch)
+    return read_robot(path, reading(lattice, robot, allow_unknown, supports, pitch))
 
 
 def foreign_formats() -> list[dict[str, str]]:

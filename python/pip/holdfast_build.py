@@ -15,14 +15,6 @@ import tempfile
 import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-INFO = """Metadata-Version: 2.1
-Name: holdfast
-Version: {version}
-Summary: Will a modular robot hold? Mechanical verdicts for reconfiguration steps
-License: Apache-2.0
-Requires-Python: >=3.9
-Requires-Dist: numpy>=1.24,<2
-"""
 
 
 def version():
@@ -56,8 +48,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     build = ROOT / (config_settings or {}).get('build-dir', 'build/pip')
     info = f'holdfast-{version()}.dist-info'
     name = f'holdfast-{version()}-{tag()}.whl'
-    files = {f'{info}/METADATA': INFO.format(version=version()).encode(),
-             f'{info}/WHEEL': 'Wheel-Version: 1.0\nGenerator: holdfast\nRoot-Is-Purelib: false\n'
+    files = {f'{info}/WHEEL': 'Wheel-Version: 1.0\nGenerator: holdfast\nRoot-Is-Purelib: false\n'
                               f'Tag: {tag()}\n'.encode()}
     with tempfile.TemporaryDirectory() as folder:
         lay_package(folder, build)

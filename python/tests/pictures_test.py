@@ -21,7 +21,7 @@ from holdfast import Robot, Verdict
 matplotlib = pytest.importorskip('matplotlib')
 matplotlib.use('Agg')
 
-from holdfast import _bodies, _look  # noqa: E402
+from holdfast import _bodies, _look, _page  # noqa: E402
 from holdfast._painter import Balls, Bodies, Callout, Faces, projected  # noqa: E402
 from matplotlib import pyplot  # noqa: E402
 
@@ -252,17 +252,23 @@ def test_the_page_holds_structure_and_report(tmp_path, monkeypatch):
     assert start['name'] == robot.name and start['report'].endswith(report.text())
     assert start['limit'].keys() >= {'factor', 'yields', 'velocities'}
     assert '<title>&lt;/script&gt;&lt;b&gt;&amp; - holdfast</title>' in page
-    frame = report._repr_html_()
+    frame = _page.frame(report)
     inside = html.unescape(re.fullmatch('<iframe srcdoc="([^"]*)".*</iframe>', frame, re.S)[1])
     start = json.loads(re.search('holdfast-start">(.*?)</script>', inside)[1])
     assert 'report' not in start and start['name'] == robot.name
 
 
-def test_without_the_page_a_notebook_shows_the_picture(tmp_path, monkeypatch):
+def test_a_notebook_shows_the_picture_of_a_report():
+    report = holdfast.load(ROOT / 'scenarios/arm_breaks_b.json').check()
+    assert not hasattr(report, '_repr_html_')
+    assert report._repr_svg_() == report.svg() and len(report.svg()) < 300_000
+
+
+def test_without_the_page_show_shows_the_picture(tmp_path, monkeypatch):
     monkeypatch.setattr('holdfast._page.__file__', str(tmp_path / 'python/holdfast/_page.py'))
     monkeypatch.setattr(sys, 'prefix', str(tmp_path))
     report = Robot([[0, 0, 0]]).check()
-    shown = report._repr_html_()
+    shown = _page.frame(report)
     assert report.svg() in shown and './dev page' in html.unescape(shown)
     with pytest.raises(holdfast.PageNotFound, match="'./dev page' builds it"):
         report.page()

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Robots from arrays of every kind; what is no robot is refused in one line."""
 import copy
+import importlib.metadata
+import io
 import os
 import pathlib
 import pickle
@@ -383,3 +385,33 @@ def test_foreign_formats_have_all_that_is_said_of_them():
     assert {'.csv', '.vox', '.stl', '.obj', '.ldr'} <= {
         ending for row in rows for ending in row['endings'].split()}
     assert all(all(row.values()) for row in rows)
+
+
+def test_files_that_are_open_are_read(tmp_path):
+    text = '{"format": "holdfast-structure", "version": 1, "modules": [[0,0,0], [1,0,0]]}'
+    path = tmp_path / 'two.json'
+    path.write_text(text)
+    for source in (io.StringIO(text), io.BytesIO(text.encode())):
+        assert holdfast.load(source) == Robot.from_text(text)
+    with open(path, encoding='utf-8') as file:
+        robot = holdfast.load(file)
+    assert (robot.name, robot) == ('two', holdfast.load(path))
+    with pytest.raises(holdfast.Error, match='expected text in UTF-8, found other bytes'):
+        holdfast.load(io.BytesIO(b'\xff\xfe\x00'))
+    with pytest.raises(holdfast.Error, match="found 'two.json'; holdfast.load reads files"):
+        Robot('two.json')
+
+
+def test_what_readers_note_is_a_warning(tmp_path):
+    path = tmp_path / 'grams.json'
+    path.write_text('{"format": "holdfast-structure", "version": 1, "modules": [[0,0,0]], '
+                    '"material": {"mass_kg": 61.06}}')
+    for read in (holdfast.load, Robot.from_file):
+        with pytest.warns(holdfast.RobotWarning, match='is the mass in kg') as said:
+            robot = read(path)
+        assert [str(one.message) for one in said] == robot.warnings
+        assert said[0].filename == __file__
+
+
+def test_pip_knows_the_package():
+    assert importlib.metadata.version('holdfast') == holdfast.__version__

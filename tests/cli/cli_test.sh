@@ -49,6 +49,7 @@ expect_line out '^              with a prop in \(4,0,1\), below a module: load r
 expect_line out '^              with connections 1[.]2[0-9] times as strong$'
 expect_exit 1 check crane.json --remedies --json crane_report.json
 expect_line crane_report.json '"remedies"'
+expect_refusal '/format: expected a structure, found a report' crane_report.json
 expect_exit 1 check crane.json crane.json --remedies
 [ "$(grep -c '^  would hold  ' out)" -eq 2 ] || fault "not the remedies of both: $(cat out)"
 expect_exit 0 check "$safe" --remedies
@@ -61,12 +62,21 @@ expect_exit 1 next long.json --quiet
 expect_exit 64 next "$safe" --json same --svg same
 expect_exit 64 chekc "$safe"
 expect_line err "no command 'chekc'; did you mean 'check'"
+expect_exit 64 new arch 20
+expect_line err "no command 'new'; did you mean 'generate'"
+expect_exit 64 check "$safe" --png arm.png
+expect_line err "no option '--png'; --svg FILE[.]png writes one$"
 expect_exit 64 check "$safe" --json ''
 expect_line err '^holdfast check: --json: the value is empty$'
 expect_exit 65 next missing.json
 
 # Proofs: arm_breaks_b carries 1.200397996 (tests/reference), arm_breaks_a 0.6402122645.
 checker=$(dirname "$program")/holdfast-checker
+for built in "$program" "$checker"; do
+  # What debuggers read may say where the sources are, nothing else may.
+  grep -aq '[.]debug_line' "$built" || ! grep -aq "$repository/" "$built" ||
+    fault "$built knows the folder that it was built in"
+done
 expect_exit 0 check --prove "$safe"
 expect_line out '^SAFE'
 expect_line out 'proof +the .* ratio lies between 0\.64021226[0-9]* and 0\.64021226[0-9]*;'
@@ -96,13 +106,15 @@ code=0
 code=0
 "$checker" "$safe" >out 2>err || code=$?
 [ "$code" -eq 65 ] || fault "the checker takes a structure: $code"
-for arguments in '64 --version' '65 .' '65 missing.txt'; do
+for arguments in '64 --verison' '65 .' '65 missing.txt'; do
   code=0
   "$checker" "${arguments#* }" >out 2>err || code=$?
   [ "$code" -eq "${arguments% *}" ] || fault "holdfast-checker $arguments: exit $code"
-  expect_line err "^holdfast-checker: (there is no option '--version'|[.]: expected a certificate,|\
+  expect_line err "^holdfast-checker: (there is no option '--verison'|[.]: expected a certificate,|\
 missing.txt: cannot be read: No such file)"
 done
+[ "$("$checker" --version)" = "$("$program" --version | sed s/holdfast/holdfast-checker/)" ] ||
+  fault "the checker is of another version: $("$checker" --version)"
 expect_exit 0 check "$safe" --certificate safe_proof.txt
 "$checker" safe_proof.txt >out || fault "the checker does not prove what is safe: $(cat out)"
 expect_line out '^  verdict +SAFE: no connection breaks, and the robot stands$'

@@ -30,16 +30,27 @@ const char* name(certificate::Law law) {
 }
 
 constexpr const char* kUsage = "usage: holdfast-checker CERTIFICATE\n";
-constexpr const char* kHelp =
-    "\n"
-    "Reads what 'holdfast check --certificate FILE' has written and proves it again, in integers "
-    "and\n"
-    "without the code that solved it: that the largest load ratio lies in the range shown, and "
-    "that\n"
-    "the robot stands. The digest is that of the robot that 'holdfast check FILE --prove' shows.\n"
-    "Exit: 0 proved that it holds, 1 proved that a connection breaks or that it topples, 2 "
-    "proved,\n"
-    "but neither of both, 3 not proved, 64 wrong usage, 65 not readable.\n";
+constexpr const char* kHelp = R"(
+Reads what 'holdfast check --certificate FILE' has written and proves it again, in integers and
+without the code that solved it: that the largest load ratio lies in the range shown, and that
+the robot stands. The digest is that of the robot that 'holdfast check FILE --prove' shows.
+
+Examples:
+  holdfast check arm.json --certificate arm.txt
+  holdfast-checker arm.txt
+
+Options:
+  -h, --help     Print this help message and exit
+  -V, --version  Print the version and exit
+
+Exit status:
+   0  it is proved that the robot holds
+   1  it is proved that a connection breaks, or that the robot topples
+   2  a range is proved, but neither of both follows from it
+   3  the certificate proves nothing
+  64  wrong usage
+  65  the certificate cannot be read
+)";
 
 constexpr int kExitHolds = 0;
 constexpr int kExitFails = 1;
@@ -146,6 +157,10 @@ int main(int argc, char** argv) {
   if (std::strcmp(argv[1], "--help") == 0 || std::strcmp(argv[1], "-h") == 0) {
     std::fputs(kUsage, stdout);
     std::fputs(kHelp, stdout);
+    return 0;
+  }
+  if (std::strcmp(argv[1], "--version") == 0 || std::strcmp(argv[1], "-V") == 0) {
+    std::puts("holdfast-checker " HOLDFAST_VERSION);
     return 0;
   }
   if (argv[1][0] == '-') {

@@ -119,8 +119,8 @@ inline CLI::Option& add_seed(CLI::App& command, std::uint64_t& seed, const std::
                 const auto read = std::from_chars(text.data(), end, number);
                 return read.ec == std::errc{} && read.ptr == end
                            ? std::string()
-                           : fmt::format("{} is not a whole number from 0 to {}",
-                                         io::one_line(text), UINT64_MAX);
+                           : fmt::format("expected a whole number from 0 to {}, found {}",
+                                         UINT64_MAX, io::one_line(text));
               });
 }
 

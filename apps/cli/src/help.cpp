@@ -10,6 +10,7 @@
 #include <array>
 #include <regex>
 #include <string_view>
+#include <utility>
 
 #include "holdfast/holdfast.hpp"
 
@@ -175,6 +176,15 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
+/// What does that for which other programs have this option; empty if nothing does.
+std::string other_option(std::string_view name, const std::vector<std::string>& known) {
+  const auto has = [&](const char* option) { return std::ranges::count(known, option) > 0; };
+  if ((name == "--png" || name == "--pdf") && has("--svg")) {
+    return fmt::format("; --svg FILE.{} writes one", name.substr(2));
+  }
+  return name == "-o" && has("--json") ? "; the file's format is an option: --json FILE" : "";
+}
+
 bool judges_many(const CLI::App& command) {
   constexpr std::array<std::string_view, 4> kNames = {"move", "next", "order", "steps"};
   return std::ranges::find(kNames, command.get_name()) != kNames.end();
@@ -194,8 +204,10 @@ std::string unknown_option(const CLI::App& command) {
             "which that does not suffice; holdfast check --deformed judges one robot",
             command.get_name());
       }
+      const std::vector<std::string> known = option_names(command);
+      const std::string near = did_you_mean(name, known);
       return fmt::format("there is no option '{}'{}", io::one_line(name),
-                         did_you_mean(name, option_names(command)));
+                         near.empty() ? other_option(name, known) : near);
     }
   }
   return "";
@@ -316,12 +328,42 @@ std::string usage_error(const CLI::App& command, std::string_view what) {
   return fmt::format("{0}: {1}\nTry '{0} --help'.\n", full_name(command), what);
 }
 
+namespace {
+
+/// Commands by the names that people try.
+constexpr auto kOtherNames =
+    std::to_array<std::pair<std::string_view, std::string_view>>({{"new", "generate"},
+                                                                  {"create", "generate"},
+                                                                  {"init", "generate"},
+                                                                  {"verify", "check"},
+                                                                  {"predict", "check"},
+                                                                  {"plan", "order"},
+                                                                  {"build", "order"},
+                                                                  {"place", "next"},
+                                                                  {"draw", "view"},
+                                                                  {"show", "view"},
+                                                                  {"open", "view"},
+                                                                  {"gui", "view"},
+                                                                  {"import", "convert"},
+                                                                  {"export", "convert"},
+                                                                  {"version", "--version"}});
+
+/// The command that a name is one for, or is like.
+std::string meant_command(std::string_view argument, const std::vector<std::string>& names) {
+  const auto* const other = std::ranges::find(
+      kOtherNames, argument, &std::pair<std::string_view, std::string_view>::first);
+  return other != kOtherNames.end() ? "; " + io::did_you_mean(other->second)
+                                    : did_you_mean(argument, names);
+}
+
+}  // namespace
+
 std::string unknown_command(const CLI::App& app, std::string_view argument) {
   std::vector<std::string> names = {"help"};
   for (const CLI::App* command : app.get_subcommands({})) {
     names.push_back(command->get_name());
   }
-  const std::string near = did_you_mean(argument, names);
+  const std::string near = meant_command(argument, names);
   const bool is_file = argument.find_first_of("./") != std::string_view::npos;
   return fmt::format("holdfast: there is no command '{}'{}\n", io::one_line(argument),
                      !near.empty() ? near

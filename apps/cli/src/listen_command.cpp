@@ -26,7 +26,8 @@ int run_listen(const ListenArguments& arguments) {
       [&](const HeardLine& line) { print_at_once(arguments.is_json ? line.json : line.text); },
       [] { return !Interruption::is_here(); });
   if (!heard) {
-    return fail(heard.error(), arguments.devices.front());
+    const std::string& device = heard.error().where;
+    return fail(heard.error(), device.empty() ? arguments.devices.front() : device);
   }
   const bool is_silent = heard.value().silent_count == static_cast<int>(arguments.devices.size());
   if (is_silent) {

@@ -147,7 +147,7 @@ base::Result<io::OrderReport> go_on(const OrderArguments& options, const io::Doc
   return continue_order(file, plan.value().document, options.done_count, request);
 }
 
-OrderRequest request_of(const OrderArguments& options, Progress& progress) {
+OrderRequest request_of(const OrderArguments& options, std::size_t all, Progress& progress) {
   OrderRequest request{.group_size = options.group_size,
                        .parallel_max = parallel_of_text(options.parallel).value(),
                        .in_pieces = options.in_pieces,
@@ -168,10 +168,11 @@ OrderRequest request_of(const OrderArguments& options, Progress& progress) {
     const auto cells = cells_of_text(text).value();  // It was checked when it was read.
     request.rule.avoid.insert(request.rule.avoid.end(), cells.begin(), cells.end());
   }
-  request.progress = [&progress](std::size_t states, std::size_t here, std::size_t furthest) {
+  request.progress = [&progress, all](std::size_t states, std::size_t here, std::size_t furthest) {
     progress.show([&] {
-      return fmt::format("{} examined, now at {}, got as far as {}", host::counted(states, "state"),
-                         host::counted(here, "module"), furthest);
+      return fmt::format("{} examined, now at {} of {}, furthest {}",
+                         host::counted(states, "state"), here, host::counted(all, "module"),
+                         furthest);
     });
   };
   if (options.is_streamed) {
@@ -275,12 +276,17 @@ int run(const OrderArguments& options) {
     throw UsageError(options.source.empty() ? "--reach surface requires --source CELL"
                                             : "--source requires --reach surface");
   }
+  if (options.reach == "free" && !options.avoid.empty()) {
+    throw UsageError("--avoid requires --reach line or surface: free modules have no ways to bar");
+  }
   const auto read = read_with_notes(options.target, options.reading);
   if (!read) {
     return fail(read.error(), options.target);
   }
   Progress progress(options.is_quiet);
-  OrderRequest request = request_of(options, progress);
+  const io::Document& given = read.value().document;
+  const std::size_t planned = given.steps.empty() ? 0 : given.steps.front().size();
+  OrderRequest request = request_of(options, given.modules.size() + planned, progress);
   if (!options.start.empty()) {
     const auto target = io::make_spec(read.value().document);
     if (!target) {

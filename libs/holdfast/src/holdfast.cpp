@@ -133,9 +133,9 @@ base::Result<io::Document> generate(std::string_view family, std::size_t size) {
   if (size < found->size_min || count > model::kModuleCountMax) {
     return base::Error{.code = base::ErrorCode::kBadInput,
                        .message = fmt::format(
-                           "the size {} is not allowed for {}: it is {} or more, and at most {} "
-                           "modules in all",
-                           size, family, found->size_min, model::kModuleCountMax)};
+                           "expected a size of {} or more for {}, and at most {} modules in all; "
+                           "found {}",
+                           found->size_min, family, model::kModuleCountMax, size)};
   }
   io::Document document;
   document.name = fmt::format("{} {}", family, size);
@@ -335,7 +335,7 @@ std::string error_json(const base::Error& error, const io::ReportOrigin& origin)
 std::string describe(const base::Error& error, std::string_view file) {
   std::string line = io::one_line(file);
   for (const std::string& part : {error.where, error.message}) {
-    if (!part.empty()) {
+    if (!part.empty() && part != file) {
       line += (line.empty() ? "" : ": ") + part;
     }
   }

@@ -11,6 +11,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "document_support.hpp"
@@ -168,6 +169,24 @@ TEST(KnownNames, keys_with_words_in_another_order_are_slips) {
   ASSERT_FALSE(result);
   EXPECT_EQ(result.error().message,
             "the key 'lateral_strength_n' is unknown: did you mean 'strength_lateral_n'?");
+}
+
+/// Numbers of the material are looked for where it is read, and numbers beside it are not read.
+TEST(KnownNames, keys_of_the_material_beside_it_are_slips) {
+  for (const auto& [key, meant] : std::to_array<std::pair<std::string, std::string>>(
+           {{"mass_kg", "mass_kg"},
+            {"lateral_strength_n", "strength_lateral_n"},
+            {"pitch", "pitch_mm"}})) {
+    const std::string text = document_test::json(R"("modules": [[0,0,0]], ")" + key + R"(": 1)");
+    const auto result = read_json(text);
+    ASSERT_FALSE(result) << key;
+    EXPECT_EQ(result.error().message, "the key '" + key + "' is unknown here: did you mean '" +
+                                          meant + "' in \"material\"?");
+    EXPECT_EQ(result.error().where, '/' + key);
+    EXPECT_TRUE(read_json(text, {.allow_unknown = true})) << key;
+    const std::string own = document_test::json(R"("modules": [[0,0,0]], "x-)" + key + R"(": 1)");
+    EXPECT_TRUE(read_json(own)) << key;
+  }
 }
 
 /// Whether a pointer leads to something.

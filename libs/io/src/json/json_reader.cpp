@@ -11,6 +11,7 @@
 #include "holdfast/io/document.hpp"
 #include "holdfast/io/goal_shape.hpp"
 #include "holdfast/io/lattice_names.hpp"
+#include "holdfast/io/report_head.hpp"
 #include "json/json_connectors.hpp"
 #include "json/json_extension.hpp"
 #include "json/json_shapes.hpp"
@@ -31,6 +32,7 @@ class JsonReader {
   void read_lattice(const Json& value, const JsonPlace& place, const ReadOptions& options);
   bool allows(const JsonPlace& place);
   void read_member(const std::string& key, const Json& value, const JsonPlace& place);
+  void note_unknown_member(const JsonPlace& place);
   void read_material(const Json& value, const JsonPlace& place);
   void read_known_answer(const Json& value, const JsonPlace& place);
   void read_visiblesim(const Json& value, const JsonPlace& place);
@@ -99,7 +101,10 @@ bool JsonReader::read_heading(const Json& root, const JsonPlace& place,
       reading_.refuse(value_of(key), place.at(key), expected);
     }
   };
-  if (format != kJsonFormatName) {
+  if (format == kReportFormat) {
+    reading_.fail(place.at("format"),
+                  "expected a structure, found a report: give the file that was judged");
+  } else if (format != kJsonFormatName) {
     expect("format", fmt::format("\"{}\"", kJsonFormatName));
   } else if (version.is_number() && version.get<double>() > kJsonVersionMax) {
     reading_.fail(
@@ -195,7 +200,23 @@ void JsonReader::read_member(const std::string& key, const Json& value, const Js
   } else if (key == "visiblesim") {
     read_visiblesim(value, place);
   } else if (key != "format" && key != "version" && key != "$schema") {
-    reading_.note_unknown_key(place, is_extended_ ? Names(kAllTopKeys) : Names(kTopKeys));
+    note_unknown_member(place);
+  }
+}
+
+/// Numbers of the material are often written beside it.
+void JsonReader::note_unknown_member(const JsonPlace& place) {
+  const Names known = is_extended_ ? Names(kAllTopKeys) : Names(kTopKeys);
+  const Names material = material_keys(is_extended_);
+  const auto same = known_spelling(place.key, material);
+  const auto meant = same ? same : near_miss(place.key, material);
+  if (meant && !reading_.allows_unknown && !place.key.starts_with("x-") &&
+      !near_miss(place.key, known)) {
+    reading_.fail(place,
+                  fmt::format("the key {} is unknown here: did you mean '{}' in \"material\"?",
+                              excerpt(place.key), *meant));
+  } else {
+    reading_.note_unknown_key(place, known);
   }
 }
 
