@@ -208,6 +208,8 @@ ROBOTS = {
     'leaning': structure([0, 0, 0], [0, 0, 1], [1, 0, 1], [2, 0, 1]),
     'slab': structure([0, 0, 0], steps=[{'attach': [[number // 17, number % 17, 0]]}
                                         for number in range(1, 17 * 16)]),
+    'bricks': structure([0, 0, 0], [0, 0, 1], [0, 0, 2], [0, 0, 3],
+                        bodies=[[[0, 0, 0], [0, 0, 1]], [[0, 0, 2], [0, 0, 3]]]),
     'grows': structure([0, 0, 0], [0, 0, 1], [1, 0, 0], planned=[[0, 1, 0]],
                        later_steps=[[[1, 1, 0]]], steps=[{'detach': [[1, 1, 0]]}]),
 }
@@ -237,6 +239,7 @@ def commands(scenarios, tests):
     yield ['check', general[0], '--scatter', '5%', '--scatter-common', '3%', '--lose-one']
     yield ['check', safe, '--scatter-mass', '5%']
     yield ['check', 'cube.json', '--lose-one', '--lose-seconds', '0']
+    yield ['check', 'bricks.json', '--lose-one', '--lose', 'modules', '--cascade']
     yield ['next', safe, '--set', 'elastic_modulus_mpa=0.05']
     yield from (['check', path, '--cascade'] for path in (safe, topples, general[0]))
     yield from (['check', 'cube.json', '--lose-one', '--lose', part]

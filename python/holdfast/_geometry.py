@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 Map = Callable[[list[Any]], list[Any]]
 
 _CELLS = ('modules', 'planned', 'later_steps', 'steps', 'loads', 'open', 'connections',
-          'obstacles')
+          'bodies', 'obstacles')
 """The keys of holdfast JSON that name cells."""
 _VECTORS = ('force_n', 'torque_nmm')
 
@@ -147,7 +147,7 @@ def _part(document: dict[str, Any], cells: set[tuple[int, ...]]) -> dict[str, An
         ends = [entry] if _is_cell(entry) else entry
         return all(tuple(cell) in cells for cell in ends)
     return {key: [entry for entry in value if is_in(entry)]
-            if key in ('modules', 'planned', 'loads', 'open', 'connections') else value
+            if key in ('modules', 'planned', 'loads', 'open', 'connections', 'bodies') else value
             for key, value in document.items()}
 
 

@@ -72,6 +72,8 @@ class Robot:
         ``[{'between': [(0, 0, 0), (1, 0, 0)], 'strength_n': 6}]``.
     joined
         ``all``, or ``listed``: the pairs in `connections` alone are joined.
+    bodies
+        Rigid pieces, such as bricks: (n, 3) cells each, whose connections never part.
     gravity
         Three numbers, m/s^2. By default (0, 0, -9.81).
     material
@@ -92,7 +94,8 @@ class Robot:
                  kind_of: Optional[Mapping[Cell, str]] = None, loads: Any = None,
                  open: Optional[Iterable[Cells]] = None,
                  connections: Optional[Sequence[Mapping[str, Any]]] = None,
-                 joined: Optional[str] = None, gravity: Optional[Sequence[float]] = None,
+                 joined: Optional[str] = None, bodies: Optional[Iterable[Any]] = None,
+                 gravity: Optional[Sequence[float]] = None,
                  material: Optional[Mapping[str, Any]] = None, robot: Optional[str] = None,
                  steps: Optional[Sequence[Any]] = None, name: str = '') -> None:
         if isinstance(cells, (str, bytes, os.PathLike)):
@@ -102,8 +105,10 @@ class Robot:
         head = head_of({'lattice': lattice and _core.lattice_name(lattice),
                         'obstacles': obstacle_list(obstacles), 'kinds': kinds,
                         'loads': load_list(loads), 'open': listed(open), 'connections': connections,
-                        'joined': joined, 'gravity_m_s2': gravity, 'material': material,
-                        'robot': robot, 'steps': steps, 'name': name or None},
+                        'joined': joined,
+                        'bodies': None if bodies is None else [listed(body) for body in bodies],
+                        'gravity_m_s2': gravity, 'material': material, 'robot': robot,
+                        'steps': steps, 'name': name or None},
                        level(supports, cells))
         self._held = _core.Structure.make(cells, planned, fixed, head,
                                           own_parts(cells, planned, masses, kind_of))
@@ -329,6 +334,8 @@ class Robot:
                                   'its own, which steps cannot say; expected a robot without it')
         there = {cell_of(module) for module in document['modules']} | attached
         document['loads'] = [load for load in document.get('loads', []) if cell_of(load) in there]
+        document['bodies'] = [body for body in document.get('bodies', [])
+                              if any(cell_of(cell) in there for cell in body)]
         return self.from_text(json_of(document), name=self.name)
 
     @property

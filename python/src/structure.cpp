@@ -139,9 +139,10 @@ std::vector<io::OwnParameters> own_of(const io::Document& document,
   return kept;
 }
 
-/// Leaves out loads on cells without an existing module or one of these planned ones.
-void keep_carried_loads(io::Document& document, const std::vector<base::Cell>& planned) {
-  if (document.extension.payloads.empty()) {
+/// Leaves out loads on cells without an existing module or one of these planned ones, and bodies
+/// of such cells alone.
+void keep_what_is_there(io::Document& document, const std::vector<base::Cell>& planned) {
+  if (document.extension.payloads.empty() && document.extension.bodies.empty()) {
     return;
   }
   std::set<base::Cell> there(planned.begin(), planned.end());
@@ -150,6 +151,9 @@ void keep_carried_loads(io::Document& document, const std::vector<base::Cell>& p
   }
   std::erase_if(document.extension.payloads,
                 [&](const model::Payload& payload) { return !there.contains(payload.cell); });
+  std::erase_if(document.extension.bodies, [&](const std::vector<base::Cell>& body) {
+    return std::ranges::none_of(body, [&](const base::Cell& cell) { return there.contains(cell); });
+  });
 }
 
 /// The robot with other planned modules and no further steps. Modules that are planned again keep
@@ -167,7 +171,7 @@ SharedStructure with_planned(const Structure& structure, const py::handle& plann
       step[i].cell = cells[i];
     }
   }
-  keep_carried_loads(document, cells);
+  keep_what_is_there(document, cells);
   return share(without_gil([&] { return make_structure(std::move(document), structure.name); }));
 }
 

@@ -4,6 +4,7 @@
 import copy
 import importlib.metadata
 import io
+import json
 import os
 import pathlib
 import pickle
@@ -105,6 +106,8 @@ def test_what_is_no_robot(cells, said):
     {'kind_of': {(0, 0, 0): 'unknown'}}, {'steps': [{'jump': 1}]}, {'kinds': {'a': object()}},
     {'open': [[(0, 0, 0), (0, 0, 2)]]}, {'open': [[(0, 0, 0)]]}, {'open': 3},
     {'open': [[(0, 0, 0), (0, 0, 1)]]}, {'joined': 'some'},
+    {'bodies': [[(0, 0, 0), (0, 0, 2)]]}, {'bodies': [[(0, 0, 0), (5, 0, 0)]]}, {'bodies': 3},
+    {'bodies': [[]]}, {'bodies': [[(0, 0, 0), (0, 0, 1)], [(0, 0, 1)]]}, {'bodies': [(0, 0, 0)]},
     {'connections': [{'strength_n': 3}]},
     {'connections': [{'between': [(0, 0, 0), (0, 0, 1)], 'strength_n': -1}]}])
 def test_options_that_are_refused(options):
@@ -149,6 +152,37 @@ def test_a_connection_has_its_own_strength():
                  connections=[{'between': pair, 'strength_n': 6}])
     ratio = weak.check().load_ratio_max / whole.check().load_ratio_max
     assert ratio == pytest.approx(14.97 / 6, rel=1e-3)
+
+
+ROW = [[x, 0, 0] for x in range(6)]
+
+
+@pytest.mark.parametrize('bodies', [
+    [ROW[:2], ROW[2:4], ROW[4:]], np.array(ROW).reshape(3, 2, 3),
+    ({tuple(cell) for cell in ROW[i:i + 2]} for i in (0, 2, 4)),
+    [[{'from': [2 * i, 0, 0], 'to': [2 * i + 1, 0, 0]}] for i in range(3)]])
+def test_bodies_part_only_from_each_other(bodies):
+    robot = Robot(ROW, fixed=ROW[:1], supports=None, bodies=bodies)
+    # By statics: behind the first stud four modules hang, at two pitches in the mean.
+    assert robot.check().load_ratio_max == pytest.approx(16 * 0.06106 * 9.81 / 14.97, rel=1e-9)
+    assert Robot(ROW, fixed=ROW[:1], supports=None).check().verdict == holdfast.Verdict.OVERLOAD
+    for same in (Robot.from_text(robot.json()), pickle.loads(pickle.dumps(robot)),
+                 robot.rotated(1), robot.translated((2, 3, 4))):
+        assert same.check().load_ratio_max == pytest.approx(robot.check().load_ratio_max)
+    assert Robot.from_text(robot.json()) == robot
+    assert len(json.loads(robot.json())['bodies']) == 3
+
+
+def test_planned_bodies_go_with_their_modules():
+    robot = Robot(ROW[:4], planned=ROW[4:], bodies=[ROW[:2], ROW[4:]])
+    assert len(json.loads(robot.planning(np.empty((0, 3), int)).json())['bodies']) == 1
+    assert len(json.loads(robot.attached().json())['bodies']) == 2
+    grown = Robot(ROW[:2], bodies=[ROW[:2], ROW[2:4]], steps=[{'attach': ROW[2:4]}])
+    assert len(json.loads(grown.with_steps([{'attach': [[0, 0, 1]]}]).json())['bodies']) == 1
+    with pytest.raises(holdfast.Error, match='a body comes and goes as a whole'):
+        grown.with_steps([{'attach': ROW[2:3]}, {'attach': ROW[3:4]}])
+    with pytest.raises(holdfast.Error, match='none at'):
+        robot.planning(ROW[4:5])
 
 
 def test_a_mask_and_cells_fix_the_same():

@@ -432,6 +432,66 @@ model::RobotSpec with_open_faces(model::RobotSpec spec, std::uint64_t seed) {
   return spec;
 }
 
+namespace {
+
+/// Grows a body from one of these cells over others of them.
+std::vector<Cell> grown_body(const base::Lattice& lattice, const std::set<Cell>& free,
+                             std::size_t count, base::Rng& rng) {
+  std::vector<Cell> body = {
+      *std::next(free.begin(), static_cast<std::ptrdiff_t>(rng.below(free.size())))};
+  for (std::size_t tries = 0; tries < 8 * count && body.size() < count; ++tries) {
+    const auto direction =
+        static_cast<Direction>(rng.below(static_cast<std::uint64_t>(lattice.direction_count)));
+    const Cell next = base::neighbour(lattice, body[rng.below(body.size())], direction);
+    if (free.contains(next) && std::ranges::find(body, next) == body.end()) {
+      body.push_back(next);
+    }
+  }
+  return body;
+}
+
+}  // namespace
+
+model::RobotSpec with_bodies(model::RobotSpec spec, std::uint64_t seed, std::size_t most) {
+  base::Rng rng(seed ^ 0xb0d7U);
+  std::int32_t number = 0;
+  for (const auto* const list : {&spec.existing, &spec.planned}) {
+    std::set<Cell> free(list->begin(), list->end());
+    while (!free.empty()) {
+      const std::vector<Cell> body = grown_body(spec.lattice, free, 1 + rng.below(most), rng);
+      const auto is_in = [&](const Cell& cell) {
+        return std::ranges::find(body, cell) != body.end();
+      };
+      const auto is_inside = [&](const model::CellPair& pair) {
+        return is_in(pair[0]) && is_in(pair[1]);
+      };
+      std::erase_if(spec.released, is_inside);
+      std::erase_if(spec.own_connectors, [&](const auto& own) { return is_inside(own.between); });
+      for (std::size_t i = 0; i < body.size(); ++i) {
+        free.erase(body[i]);
+        for (std::size_t k = 0; k < i; ++k) {
+          if (model::direction_between(spec.lattice, body[i], body[k])) {
+            spec.own_connectors.push_back(
+                {.between = {body[i], body[k]}, .law = {}, .body = number});
+          }
+        }
+      }
+      ++number;
+    }
+  }
+  return spec;
+}
+
+model::RobotSpec with_strong_bodies(model::RobotSpec spec, double strength_n) {
+  for (model::OwnConnector& own : spec.own_connectors) {
+    if (own.body != model::OwnConnector::kNoBody) {
+      own.body = model::OwnConnector::kNoBody;
+      own.law.strength_n = strength_n;
+    }
+  }
+  return spec;
+}
+
 model::RobotSpec turned(const model::RobotSpec& spec, const Symmetry& symmetry) {
   model::RobotSpec result = spec;
   const auto turn = [&](Cell& cell) { cell = symmetry(spec.lattice, cell); };

@@ -52,6 +52,13 @@ model::RobotSpec with_friction(model::RobotSpec spec, std::uint64_t seed);
 /// modules, and all of them, in one piece, and with some connections that have a law of their own.
 model::RobotSpec with_open_faces(model::RobotSpec spec, std::uint64_t seed);
 
+/// Random modules of it, existing or planned, become bodies of up to `most` modules; open faces and
+/// laws inside are forgotten.
+model::RobotSpec with_bodies(model::RobotSpec spec, std::uint64_t seed, std::size_t most = 4);
+
+/// The robot without bodies: connections that were inside hold `strength_n` instead.
+model::RobotSpec with_strong_bodies(model::RobotSpec spec, double strength_n);
+
 /// All limits of its kinds' connectors times a factor, or without kinds the material's strengths.
 model::RobotSpec with_strengths_times(model::RobotSpec spec, double factor);
 

@@ -67,7 +67,8 @@ void take_own(const std::map<base::Cell, io::OwnParameters>& own, io::Document& 
   }
 }
 
-/// Takes away what is said of connections of modules that are there no more.
+/// Takes away what is said of connections of modules that are there no more, and bodies of which
+/// nothing is left.
 void forget_absent_pairs(io::Document& document) {
   const auto entries = entries_by_cell(document);
   const auto is_absent = [&](const model::CellPair& pair) {
@@ -76,6 +77,10 @@ void forget_absent_pairs(io::Document& document) {
   std::erase_if(document.extension.open, is_absent);
   std::erase_if(document.extension.connections,
                 [&](const io::ConnectionEntry& entry) { return is_absent(entry.between); });
+  std::erase_if(document.extension.bodies, [&](const std::vector<base::Cell>& body) {
+    return std::ranges::none_of(body,
+                                [&](const base::Cell& cell) { return entries.contains(cell); });
+  });
 }
 
 /// Takes what the request says beyond cells and material.

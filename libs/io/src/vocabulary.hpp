@@ -98,7 +98,7 @@ inline constexpr std::string_view kSafetyFactorKey = "safety_factor";
 /// The keys that only version 2 has.
 inline constexpr auto kExtensionKeys = std::to_array<std::string_view>(
     {"robot", "lattice", kSafetyFactorKey, "floor", "gravity_m_s2", "kinds", "joined", "open",
-     "connections", "obstacles", "loads", "steps"});
+     "connections", "bodies", "obstacles", "loads", "steps"});
 inline constexpr auto kAllTopKeys = joined(kTopKeys, kExtensionKeys);
 inline constexpr auto kOwnParameterKeys = std::to_array<std::string_view>({"kind", "mass_kg"});
 /// The keys of many modules in one entry.

@@ -385,7 +385,7 @@ std::optional<std::string> Robot::take_own_connectors(const RobotSpec& spec,
                              is_first ? *direction : base::opposite(*direction));
     has_default_connectors_ = has_default_connectors_ && is_of_kinds;
     connectors_.push_back(own.law);
-    own_tags_.push_back(own.tag);
+    own_names_.push_back(own);
   }
   std::ranges::sort(own_connectors_);
   const auto twice =
@@ -412,13 +412,54 @@ const ConnectorLaw* Robot::find_own_connector(const Connection& connection) cons
                                                                  : nullptr;
 }
 
+const OwnConnector* Robot::find_own_name(const Connection& connection) const {
+  const ConnectorLaw* const own =
+      own_connectors_.empty() ? nullptr : find_own_connector(connection);
+  const std::size_t first = connectors_.size() - own_names_.size();
+  return own == nullptr ? nullptr
+                        : &own_names_[static_cast<std::size_t>(own - connectors_.data()) - first];
+}
+
 std::int32_t Robot::connector_tag(const Connection& connection) const {
-  const ConnectorLaw* const own = find_own_connector(connection);
-  if (own == nullptr) {
-    return OwnConnector::kNoTag;
+  const OwnConnector* const own = find_own_name(connection);
+  return own == nullptr ? OwnConnector::kNoTag : own->tag;
+}
+
+std::int32_t Robot::body(const Connection& connection) const {
+  const OwnConnector* const own = find_own_name(connection);
+  return own == nullptr ? OwnConnector::kNoBody : own->body;
+}
+
+bool Robot::has_bodies() const {
+  return std::ranges::any_of(
+      own_names_, [](const OwnConnector& own) { return own.body != OwnConnector::kNoBody; });
+}
+
+std::vector<std::int32_t> Robot::bodies() const {
+  std::vector<std::int32_t> by_module(modules_.size(), OwnConnector::kNoBody);
+  if (!has_bodies()) {
+    return by_module;
   }
-  const std::size_t first = connectors_.size() - own_tags_.size();
-  return own_tags_[static_cast<std::size_t>(own - connectors_.data()) - first];
+  for (const Connection& pair : connections()) {
+    if (const std::int32_t number = body(pair); number != OwnConnector::kNoBody) {
+      by_module[base::at(pair.a)] = number;
+      by_module[base::at(pair.b)] = number;
+    }
+  }
+  return by_module;
+}
+
+std::map<std::int32_t, std::vector<std::int32_t>> Robot::modules_by_body() const {
+  std::map<std::int32_t, std::vector<std::int32_t>> modules;
+  if (has_bodies()) {
+    const std::vector<std::int32_t> by_module = bodies();
+    for (std::size_t i = 0; i < by_module.size(); ++i) {
+      if (by_module[i] != OwnConnector::kNoBody) {
+        modules[by_module[i]].push_back(static_cast<std::int32_t>(i));
+      }
+    }
+  }
+  return modules;
 }
 
 std::optional<std::string> Robot::take_loads(const RobotSpec& spec, const CellIndex& index) {

@@ -10,7 +10,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <map>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -55,7 +58,20 @@ int rank(Verdict verdict) {
 }
 
 model::RobotSpec without(model::RobotSpec spec, const Loss& loss) {
-  const auto is_lost = [&](const Cell& cell) { return cell == loss.cells[0]; };
+  const auto is_of_body = [&](const Cell& cell) {
+    return std::ranges::any_of(spec.own_connectors, [&](const model::OwnConnector& own) {
+      return own.body == loss.body && (own.between[0] == cell || own.between[1] == cell);
+    });
+  };
+  std::vector<Cell> lost = {loss.cells[0]};
+  for (const auto* const list : {&spec.existing, &spec.planned}) {
+    std::ranges::copy_if(*list, std::back_inserter(lost), [&](const Cell& cell) {
+      return loss.body != model::OwnConnector::kNoBody && is_of_body(cell);
+    });
+  }
+  const auto is_lost = [&](const Cell& cell) {
+    return std::ranges::find(lost, cell) != lost.end();
+  };
   if (loss.kind == LossKind::kConnection) {
     spec.released.push_back(loss.cells);
   } else if (loss.kind == LossKind::kModule) {
@@ -165,11 +181,27 @@ Expected check_without(const model::RobotSpec& spec, const Loss& loss) {
 /// Every loss of a robot.
 std::vector<Loss> losses_of(const model::Robot& robot) {
   std::vector<Loss> losses;
+  constexpr std::int32_t kNoBody = model::OwnConnector::kNoBody;
+  std::map<Cell, std::int32_t> body_at;
   for (std::size_t i = 0; i < robot.connections().size(); ++i) {
-    losses.push_back({.kind = LossKind::kConnection, .cells = model::ends(robot, i)});
+    const std::int32_t body = robot.body(robot.connections()[i]);
+    if (body == kNoBody) {
+      losses.push_back({.kind = LossKind::kConnection, .cells = model::ends(robot, i)});
+    } else {
+      body_at[model::ends(robot, i)[0]] = body;
+      body_at[model::ends(robot, i)[1]] = body;
+    }
   }
+  std::set<std::int32_t> gone;
   for (const model::Module& module : robot.modules()) {
-    losses.push_back({.kind = LossKind::kModule, .cells = {module.cell, {}}});
+    const auto found = body_at.find(module.cell);
+    const std::int32_t body = found == body_at.end() ? kNoBody : found->second;
+    const auto size =
+        std::ranges::count_if(body_at, [&](const auto& one) { return one.second == body; });
+    const bool is_all = size == static_cast<std::ptrdiff_t>(robot.modules().size());
+    if (!is_all && (body == kNoBody || gone.insert(body).second)) {
+      losses.push_back({.kind = LossKind::kModule, .cells = {module.cell, {}}, .body = body});
+    }
   }
   for (const model::Module& module : robot.modules()) {
     if (module.support == model::Support::kFixed) {
@@ -292,6 +324,23 @@ TEST(Losses, on_all_lattices_and_supports_are_as_checked_without) {
   EXPECT_GT(count.robots, seeds / 4);
   EXPECT_GT(count.fatal - count.falling, 0U);
   EXPECT_GT(count.checks, 0U);
+}
+
+/// Connections inside bodies are not lost, and bodies as wholes.
+TEST(Losses, of_bodies_are_as_checked_without) {
+  Count count;
+  const std::uint64_t seeds = test::campaign(24U);
+  for (std::uint64_t seed = 300; seed < 300 + seeds; ++seed) {
+    const double ratio = seed % 3 == 0 ? 0.05 : seed % 3 == 1 ? 0.3 : 0.7;
+    model::RobotSpec built = seed % 2 == 0
+                                 ? test::random_robot(seed, 4, 24)
+                                 : test::general_robot(test::kLattices[seed / 2 % 4], seed);
+    const model::RobotSpec spec = with_ratio(test::with_bodies(std::move(built), seed), ratio);
+    expect_as_checked(spec, "seed " + std::to_string(seed), count);
+  }
+  EXPECT_GT(count.robots, seeds / 4);
+  EXPECT_GT(count.fatal - count.falling, 0U);
+  EXPECT_GT(count.bounds + count.checks, 0U);
 }
 
 void expect_same(const std::vector<LossAnswer>& fast, const std::vector<LossAnswer>& checked,

@@ -72,12 +72,27 @@ std::vector<Record> scatter(PetscRanks& ranks, const Whole& whole) {
   return records;
 }
 
+/// What is said of single pairs needs modules that ranks do not have.
+std::optional<base::Error> find_pairs_fault(const io::Extension& extension) {
+  if (extension.open.empty() && extension.connections.empty() && !extension.joins_listed &&
+      extension.bodies.empty()) {
+    return std::nullopt;
+  }
+  return base::Error{base::ErrorCode::kUnsupported,
+                     "the structure has open faces, connections of its own or bodies, expected "
+                     "none: ranks do not know them; check it with holdfast",
+                     {}};
+}
+
 base::Result<Structure> structure_of(PetscRanks& ranks, const SharedText& text,
                                      std::vector<Record> records,
                                      const io::ReadOptions& options = {}) {
   auto read = io::read_json(text.document, options);
   if (!read) {
     return read.error();
+  }
+  if (auto error = find_pairs_fault(read.value().document.extension)) {
+    return *std::move(error);
   }
   auto spec = io::make_spec(read.value().document);
   if (!spec) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <utility>
@@ -61,6 +62,9 @@ void write_loss(io::JsonStream& json, const model::Robot& robot, const Loss& los
       return;
     case LossKind::kModule:
       json.member("module", loss.cells[0]);
+      if (loss.body != model::OwnConnector::kNoBody) {
+        json.member("body", loss.body);
+      }
       return;
     case LossKind::kFoot:
       break;
@@ -118,8 +122,38 @@ std::string headline(const LossReport& report) {
   if (!report.undecided.empty()) {
     return fmt::format("none of {} single losses is known to bring it down", report.loss_count);
   }
-  return fmt::format("safe whatever is lost: each of {} connections, modules and feet",
-                     report.loss_count);
+  const bool has_bodies = std::ranges::any_of(report.answers, [](const LossAnswer& answer) {
+    return answer.loss.body != model::OwnConnector::kNoBody;
+  });
+  return fmt::format("safe whatever is lost: each of {} connections, modules{} feet",
+                     report.loss_count, has_bodies ? ", bodies and" : " and");
+}
+
+/// The robot's connections, modules and facets that each loss is of, by kind, as plan::lose_each()
+/// goes through them.
+using LostPlaces = std::array<std::vector<std::vector<std::size_t>>, plan::kLossKindCount>;
+
+LostPlaces lost_places(const model::Robot& robot) {
+  LostPlaces places;
+  for (std::size_t i = 0; i < robot.connections().size(); ++i) {
+    if (robot.body(robot.connections()[i]) == model::OwnConnector::kNoBody) {
+      places[0].push_back({i});
+    }
+  }
+  const auto modules = robot.modules_by_body();
+  const std::vector<std::int32_t> bodies = robot.bodies();
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const auto body = modules.find(bodies[i]);
+    if (body == modules.end()) {
+      places[1].push_back({i});
+    } else if (base::at(body->second.front()) == i) {
+      places[1].emplace_back(body->second.begin(), body->second.end());
+    }
+  }
+  for (std::size_t i = 0; i < robot.facets().size(); ++i) {
+    places[2].push_back({i});
+  }
+  return places;
 }
 
 }  // namespace
@@ -130,7 +164,9 @@ std::string loss_words(const plan::Loss& loss) {
     case LossKind::kConnection:
       return cell + "-" + model::text(loss.cells[1]);
     case LossKind::kModule:
-      return cell;
+      return loss.body == model::OwnConnector::kNoBody
+                 ? cell
+                 : fmt::format("body {} with {}", loss.body, cell);
     case LossKind::kFoot:
       break;
   }
@@ -167,16 +203,18 @@ std::vector<io::MoreNumbers> lose_one_numbers(const model::Robot& robot, const L
   using List = std::vector<double> io::MoreNumbers::*;
   constexpr std::array<List, plan::kLossKindCount> kLists = {
       &io::MoreNumbers::connections, &io::MoreNumbers::modules, &io::MoreNumbers::facets};
+  const LostPlaces places = lost_places(robot);
   std::array<std::size_t, plan::kLossKindCount> next{};
   for (const LossAnswer& answer : report.answers) {
     const auto kind = static_cast<std::size_t>(answer.loss.kind);
     if (answer.loss.kind == LossKind::kFoot && !answer.loss.direction) {
       continue;  // What fixes a module is no facet.
     }
-    const std::size_t i = next[kind]++;
-    (outcome.*kLists[kind])[i] = answer.is_fatal() ? 3 : answer.verdict == Verdict::kSafe ? 1 : 2;
-    if (answer.verdict != Verdict::kUnstable) {
-      (ratio.*kLists[kind])[i] = answer.load_ratio_max.value_or(kUnknown);
+    for (const std::size_t i : places[kind][next[kind]++]) {
+      (outcome.*kLists[kind])[i] = answer.is_fatal() ? 3 : answer.verdict == Verdict::kSafe ? 1 : 2;
+      if (answer.verdict != Verdict::kUnstable) {
+        (ratio.*kLists[kind])[i] = answer.load_ratio_max.value_or(kUnknown);
+      }
     }
   }
   return {std::move(outcome), std::move(ratio)};

@@ -100,6 +100,28 @@ std::set<std::pair<std::size_t, std::size_t>> special_modules(const Document& do
 }
 
 /// The document without its modules but those that have something of their own, and the first.
+/// Takes away what an extension says of pairs and bodies of which later steps bring a module.
+void forget_later(const Document& document, Extension& extension) {
+  if (document.steps.size() <= 1 && document.extension.plan.empty()) {
+    return;
+  }
+  std::set<base::Cell> there;
+  for (const ModuleEntry& module : document.modules) {
+    there.insert(module.cell);
+  }
+  for (std::size_t i = 0; i < std::min<std::size_t>(1, document.steps.size()); ++i) {
+    for (const PlannedEntry& planned : document.steps[i]) {
+      there.insert(planned.cell);
+    }
+  }
+  const auto is_later = [&](const base::Cell& cell) { return !there.contains(cell); };
+  const auto has_later = [&](const auto& cells) { return std::ranges::any_of(cells, is_later); };
+  std::erase_if(extension.open, has_later);
+  std::erase_if(extension.bodies, has_later);
+  std::erase_if(extension.connections,
+                [&](const ConnectionEntry& entry) { return has_later(entry.between); });
+}
+
 Document without_modules(const Document& document) {
   Document common;
   common.name = document.name;
@@ -114,6 +136,7 @@ Document without_modules(const Document& document) {
       common.extension.payloads = spec.value().payloads;  // None on modules that come later.
     }
   }
+  forget_later(document, common.extension);
   const auto special = special_modules(document);
   for (std::size_t i = 0; i < document.modules.size(); ++i) {
     if (i == 0 || special.contains({0, i})) {

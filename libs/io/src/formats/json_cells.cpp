@@ -59,13 +59,14 @@ CellsKind kind_of(const Json& root) {
   if (!root.is_object() || root.empty()) {
     return CellsKind::kNone;
   }
+  const CellsKey* const key = find_key(root);
   // What has more of our keys is our format without its heading, of which nothing may be lost.
-  for (const std::string_view key : kAllTopKeys) {
-    if (!is_one_of(key, {"modules", "name", "description"}) && root.contains(key)) {
+  for (const std::string_view ours : kAllTopKeys) {
+    const bool is_list = key != nullptr && key->list == ours;
+    if (!is_list && !is_one_of(ours, {"modules", "name", "description"}) && root.contains(ours)) {
       return CellsKind::kNone;
     }
   }
-  const CellsKey* const key = find_key(root);
   return key != nullptr            ? key->kind
          : is_brick(*root.begin()) ? CellsKind::kBricks
                                    : CellsKind::kNone;

@@ -12,6 +12,7 @@
 
 #include "holdfast/host/text.hpp"
 #include "json/json_connectors.hpp"
+#include "json/json_shapes.hpp"
 #include "text_input.hpp"
 #include "vocabulary.hpp"
 
@@ -157,6 +158,31 @@ ConnectionEntry connection(JsonReading& reading, const Json& value, const JsonPl
 
 void read_connections(JsonReading& reading, const Json& value, const JsonPlace& place) {
   reading.document.extension.connections = list_of(reading, value, place, connection);
+}
+
+std::vector<Cell> body(JsonReading& reading, const Json& value, const JsonPlace& place) {
+  std::vector<Cell> found;
+  for_each_element(reading, value, place, [&](const Json& element, const JsonPlace& here) {
+    if (is_shape(element)) {
+      for (const auto& [key, member] : reading.members(element, here)) {
+        if (std::ranges::find(kShapeKeys, key) == kShapeKeys.end()) {
+          reading.note_unknown_key(here.at(key), kShapeKeys);
+        }
+      }
+      const std::vector<Cell> shape = shape_cells(reading, element, here);
+      found.insert(found.end(), shape.begin(), shape.end());
+    } else {
+      found.push_back(reading.cell(element, here));
+    }
+  });
+  if (found.empty()) {
+    reading.fail(place, "expected at least one cell, found an empty array");
+  }
+  return found;
+}
+
+void read_bodies(JsonReading& reading, const Json& value, const JsonPlace& place) {
+  reading.document.extension.bodies = list_of(reading, value, place, body);
 }
 
 struct ColoredObstacle {
@@ -312,8 +338,9 @@ std::string own_place(const OwnParameters& own) {
 
 /// The readers of kExtensionKeys, in their order.
 constexpr void (*kReaders[])(JsonReading&, const Json&, const JsonPlace&) = {
-    pass_over,   pass_over, read_safety_factor, read_floor,     read_gravity, read_kinds,
-    read_joined, read_open, read_connections,   read_obstacles, read_loads,   read_steps};
+    pass_over,      pass_over,   read_safety_factor, read_floor,       read_gravity,
+    read_kinds,     read_joined, read_open,          read_connections, read_bodies,
+    read_obstacles, read_loads,  read_steps};
 static_assert(std::size(kReaders) == kExtensionKeys.size());
 
 }  // namespace

@@ -187,6 +187,8 @@ void add_connection_members(Items& members, const Extension& extension) {
     add_scatter_members(items, entry.scatter);
     return object(items);
   });
+  add_list(members, "bodies", extension.bodies,
+           [](const std::vector<base::Cell>& body) { return json_text(std::span(body)); });
 }
 
 void add_obstacle_members(Items& members, const Extension& extension) {

@@ -132,6 +132,9 @@ void write_connection(JsonStream& json, const model::Robot& robot,
   json.value(a);
   json.key("b");
   json.value(b);
+  if (const std::int32_t body = robot.body(pair); body != model::OwnConnector::kNoBody) {
+    json.member("body", body);
+  }
   json.member("load_ratio", result.load_ratio);
   json.member("axial_n", result.axial_n);
   json.member("bending_nmm", result.bending_nmm);

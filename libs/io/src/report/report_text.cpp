@@ -91,10 +91,13 @@ void write_loads(Out out, const model::Robot& robot, const verdict::Assessment& 
   const std::vector<std::size_t> order = most_loaded(assessment, kListedConnections);
   for (std::size_t i = 0; i < order.size(); ++i) {
     const verdict::ConnectionResult& result = assessment.connections[order[i]];
-    fmt::format_to(out, "  {}  {:>7}  {:<24} {:>9} N axial {:>9} N mm bending\n",
-                   i == 0 ? "load ratio" : "          ", beside_one(result.load_ratio, 4),
-                   model::ends_text(robot, order[i]), host::fixed(result.axial_n, 3),
-                   host::fixed(result.bending_nmm, 1));
+    const std::int32_t body = robot.body(robot.connections()[order[i]]);
+    const bool is_inside = body != model::OwnConnector::kNoBody;
+    fmt::format_to(
+        out, "  {}  {:>7}  {:<24} {:>9} N axial {:>9} N mm bending{}\n",
+        i == 0 ? "load ratio" : "          ", is_inside ? "-" : beside_one(result.load_ratio, 4),
+        model::ends_text(robot, order[i]), host::fixed(result.axial_n, 3),
+        host::fixed(result.bending_nmm, 1), is_inside ? fmt::format(", inside body {}", body) : "");
   }
   if (!order.empty() && !assessment.is_stable) {
     fmt::format_to(out, "              (not meaningful: the robot {})\n",

@@ -109,7 +109,7 @@ base::Cell lowest_cell(const model::Robot& robot) {
 }
 
 VisibleSurface::VisibleSurface(const model::Robot& robot, Cast cast)
-    : robot_(robot), lowest_(lowest_cell(robot)) {
+    : robot_(robot), lowest_(lowest_cell(robot)), bodies_(robot.bodies()) {
   const auto modules = robot.modules();
   // Existing modules come first.
   const std::size_t count =
@@ -220,6 +220,11 @@ void VisibleSurface::add_edge(const Triangle& triangle, const Triangle* other, V
     const std::int32_t step_from = nearness(triangle, from) - nearness(*other, from);
     const std::int32_t step_to = nearness(triangle, to) - nearness(*other, to);
     edge.is_outline = step_from != 0 || step_to != 0;
+    const std::int32_t body = bodies_[triangle.module];
+    if (!edge.is_outline && other->side == triangle.side && body == bodies_[other->module] &&
+        body != model::OwnConnector::kNoBody) {
+      return;  // No seam inside a body.
+    }
     if (!edge.is_outline) {
       edge.is_planned = edge.is_planned || is_planned(*other);
     } else {

@@ -88,6 +88,7 @@ class VisibleSurface {
 
   const model::Robot& robot_;
   base::Cell lowest_;
+  std::vector<std::int32_t> bodies_;  ///< By module; see Robot::bodies().
   std::vector<Triangle> triangles_;
 };
 

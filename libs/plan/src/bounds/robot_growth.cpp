@@ -41,6 +41,8 @@ RobotGrowth::RobotGrowth(const model::RobotSpec& spec, const model::Robot& targe
       in_pieces_(in_pieces),
       thread_count_(thread_count),
       run_judge_(spec, target, thread_count),
+      bodies_(target.bodies()),
+      modules_by_body_(target.modules_by_body()),
       places_(places_in_layers(target, supports_and(target, core))),
       state_(spec.existing.size()),
       beside_count_(spec.existing.size()) {
@@ -52,6 +54,11 @@ RobotGrowth::RobotGrowth(const model::RobotSpec& spec, const model::Robot& targe
   if (!in_pieces && verdict::is_on_flat_floor(target) && target.fixed_count() == 0) {
     balance_.emplace(target);
   }
+}
+
+std::vector<Element> RobotGrowth::unit(Element element) const {
+  const auto found = modules_by_body_.find(bodies_[base::at(element)]);
+  return found == modules_by_body_.end() ? std::vector{element} : found->second;
 }
 
 RobotGrowth::Rank RobotGrowth::rank(Element element) const {

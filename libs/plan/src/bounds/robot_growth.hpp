@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <set>
 #include <span>
@@ -30,6 +31,11 @@ class RobotGrowth final : public GrowingStructure {
               const ReachRule& rule, bool in_pieces, int thread_count);
 
   std::size_t element_count() const override { return spec_.existing.size(); }
+
+  /// Bodies come and go as wholes.
+  bool has_units() const override { return !modules_by_body_.empty(); }
+
+  std::vector<Element> unit(Element element) const override;
 
   /// Growing: in layers about the supports and the core, by steps in the target (LayerPlace).
   /// Shrinking: the other way. On a flat floor those without which the robot would topple, or with
@@ -79,6 +85,8 @@ class RobotGrowth final : public GrowingStructure {
   std::vector<Element> supported_;  ///< Modules that something supports, if states are in pieces.
   int thread_count_;
   RunJudge run_judge_;
+  std::vector<std::int32_t> bodies_;  ///< By module; see Robot::bodies().
+  std::map<std::int32_t, std::vector<Element>> modules_by_body_;
   std::vector<LayerPlace> places_;  ///< By module, about the supports and the core.
   std::uint64_t seed_ = 0;
   // What follows the state that was asked for last.

@@ -99,18 +99,33 @@ class Breaking {
     };
     const std::int32_t a = index(loss.cells[0]);
     if (loss.kind == LossKind::kModule) {
-      std::vector<Piece> held = held_parts_of(
-          all, whole_,
-          [a](std::size_t, const model::Connection& pair) { return pair.a != a && pair.b != a; });
-      std::erase(held, Piece{a});
-      std::erase(fallen_, a);
-      return held;
+      return parts_without(modules_of(loss, a), all);
     }
     spec_.released.push_back({loss.cells[0], loss.cells[1]});
     const auto lost = std::minmax({a, index(loss.cells[1])});
     return held_parts_of(all, whole_, [lost](std::size_t, const model::Connection& pair) {
       return std::minmax({pair.a, pair.b}) != lost;
     });
+  }
+
+  /// The modules that are lost, ascending: one, or those of a body.
+  Piece modules_of(const Loss& loss, std::int32_t first) const {
+    const auto bodies = whole_.modules_by_body();
+    const auto found = bodies.find(loss.body);
+    return found == bodies.end() ? Piece{first} : found->second;
+  }
+
+  std::vector<Piece> parts_without(const Piece& lost, const Piece& all) {
+    const auto is_lost = [&](std::int32_t module) {
+      return std::ranges::binary_search(lost, module);
+    };
+    std::vector<Piece> held =
+        held_parts_of(all, whole_, [&](std::size_t, const model::Connection& pair) {
+          return !is_lost(pair.a) && !is_lost(pair.b);
+        });
+    std::erase_if(held, [&](const Piece& piece) { return is_lost(piece.front()); });
+    std::erase_if(fallen_, is_lost);
+    return held;
   }
 
   /// The robot of a piece, its modules in the piece's order.

@@ -170,7 +170,7 @@ void LossJudge::look_at_facets() {
 }
 
 bool LossJudge::knows(const LostPart& part) const {
-  if (part.is_apart || part.has_fixed || part.fallen_count > 0) {
+  if (part.is_apart || part.has_fixed || part.fallen_count > 0 || !part.body.empty()) {
     return false;
   }
   return options_.is_bonded || !has_polygon() || margin_mm(part).value_or(-1) > 0;

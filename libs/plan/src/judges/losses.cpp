@@ -52,7 +52,8 @@ constexpr std::chrono::milliseconds kTellPeriod{100};
 /// The worst loss is sought among so many that are known by a bound alone.
 constexpr std::size_t kRefinedMax = 256;
 
-/// The spec without what is lost. All modules are there: a piece may have none but planned ones.
+/// The spec without what is lost, but for a body, whose modules are in no piece that is left. All
+/// modules are there: a piece may have none but planned ones.
 model::RobotSpec spec_after(model::RobotSpec spec, const Loss& loss) {
   const Cell& cell = loss.cells[0];
   spec.existing.insert(spec.existing.end(), spec.planned.begin(), spec.planned.end());
@@ -343,9 +344,7 @@ class LossSearch {
         robot_.connections(), robot_.modules().size(),
         [&](std::size_t, const model::Connection& pair) { return !part.lacks(pair); });
     std::vector<Piece> pieces = parts.lists();
-    std::erase_if(pieces, [&](const Piece& piece) {
-      return part.module && piece.front() == static_cast<std::int32_t>(*part.module);
-    });
+    std::erase_if(pieces, [&](const Piece& piece) { return part.has_lost(piece.front()); });
     return pieces;
   }
 

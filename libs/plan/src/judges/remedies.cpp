@@ -71,8 +71,8 @@ class RemedySearch {
   Remedies find() {
     const std::vector<Cell> free = free_cells(spec_);
     const std::vector<Cell> props = prop_cells(free);
-    const std::vector<Cell> fixings = module_cells(false);
-    const std::vector<Cell> removals = module_cells(true);
+    const std::vector<Cell> fixings = fixing_cells();
+    const std::vector<Cell> removals = removal_cells();
     all_ = free.size();
     for (const std::size_t count : {props.size(), fixings.size(), removals.size()}) {
       all_ += std::min(count, options_.trials_max);
@@ -91,12 +91,24 @@ class RemedySearch {
     return remedies.lists[static_cast<std::size_t>(kind)];
   }
 
-  std::vector<Cell> module_cells(bool has_fixed) const {
+  std::vector<Cell> fixing_cells() const {
     std::vector<Cell> cells;
     for (const std::size_t i : order_) {
       const model::Module& module = robot_.modules()[i];
-      if (has_fixed || module.support != model::Support::kFixed) {
+      if (module.support != model::Support::kFixed) {
         cells.push_back(module.cell);
+      }
+    }
+    return cells;
+  }
+
+  /// The cells of modules that may go by themselves: those of bodies may not.
+  std::vector<Cell> removal_cells() const {
+    const std::vector<std::int32_t> bodies = robot_.bodies();
+    std::vector<Cell> cells;
+    for (const std::size_t i : order_) {
+      if (bodies[i] == model::OwnConnector::kNoBody) {
+        cells.push_back(robot_.modules()[i].cell);
       }
     }
     return cells;

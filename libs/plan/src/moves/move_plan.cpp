@@ -37,6 +37,13 @@ std::optional<base::Error> find_robot_fault(const MoveTask& task, const model::R
     return base::bad_input(
         fmt::format("{} has open faces between neighbours; all must be connected", which));
   }
+  const auto is_inside = [](const model::OwnConnector& own) {
+    return own.body != model::OwnConnector::kNoBody;
+  };
+  if (std::ranges::any_of(spec.own_connectors, is_inside)) {
+    return base::bad_input(
+        fmt::format("{} has bodies of several modules, and modules move one by one", which));
+  }
   if (!spec.own_connectors.empty()) {
     return base::bad_input(fmt::format(
         "{} has connections with laws of their own, which stay with no module that moves", which));

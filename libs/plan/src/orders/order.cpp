@@ -79,16 +79,65 @@ std::vector<ElementSet> single_starts(const OrderTask& task, const model::Robot&
   return starts;
 }
 
+/// Adds the rest of every body of which a state has a part.
+void complete_bodies(const model::Robot& target, ElementSet& state) {
+  for (const auto& [body, modules] : target.modules_by_body()) {
+    const auto is_there = [&](Element module) { return state.contains(module); };
+    if (std::ranges::any_of(modules, is_there)) {
+      for (const Element module : modules) {
+        if (!state.contains(module)) {
+          state.insert(module);
+        }
+      }
+    }
+  }
+}
+
+/// What is wrong with a start that has a part of a body.
+std::optional<base::Error> find_body_fault(const model::Robot& target, const ElementSet& start) {
+  for (const auto& [body, modules] : target.modules_by_body()) {
+    const auto is_there = [&](Element module) { return start.contains(module); };
+    const auto there = std::ranges::find_if(modules, is_there);
+    const auto missing = std::ranges::find_if_not(modules, is_there);
+    if (there != modules.end() && missing != modules.end()) {
+      const auto cell = [&](Element module) { return target.modules()[base::at(module)].cell; };
+      return bad_start(
+          fmt::format("the start has {} of body {}, but not {}: a body comes as a whole",
+                      model::text(cell(*there)), body, model::text(cell(*missing))));
+    }
+  }
+  return std::nullopt;
+}
+
+/// Single modules, or bodies, with a support; see single_starts().
+std::vector<ElementSet> unit_starts(const OrderTask& task, const model::Robot& target) {
+  std::vector<ElementSet> starts = single_starts(task, target);
+  States seen;
+  if (target.has_bodies()) {
+    std::erase_if(starts, [&](ElementSet& start) {
+      complete_bodies(target, start);
+      return !seen.insert(start).second;
+    });
+  }
+  return starts;
+}
+
 /// All states that an order may begin with.
 base::Result<std::vector<ElementSet>> find_starts(const OrderTask& task,
                                                   const model::Robot& target) {
   const std::vector<Cell>& cells = task.start.empty() ? task.target.fixed : task.start;
   if (cells.empty()) {
-    return single_starts(task, target);
+    return unit_starts(task, target);
   }
-  auto modules = find_modules(task, cells);
-  if (!modules) {
-    return modules.error();
+  auto found = find_modules(task, cells);
+  if (!found) {
+    return found.error();
+  }
+  ElementSet modules = std::move(found).value();
+  if (task.start.empty()) {
+    complete_bodies(target, modules);
+  } else if (auto fault = find_body_fault(target, modules)) {
+    return *std::move(fault);
   }
   for (const Cell& cell : task.target.fixed) {
     if (std::ranges::find(cells, cell) == cells.end()) {
@@ -98,7 +147,7 @@ base::Result<std::vector<ElementSet>> find_starts(const OrderTask& task,
     }
   }
   for (const ElementSet& piece :
-       task.in_pieces ? pieces_of(target, modules.value()) : std::vector{modules.value()}) {
+       task.in_pieces ? pieces_of(target, modules) : std::vector{modules}) {
     const auto start = model::Robot::create(part_of(task.target, piece));
     if (!start) {
       return bad_start(
@@ -106,7 +155,7 @@ base::Result<std::vector<ElementSet>> find_starts(const OrderTask& task,
                       task.start.empty() ? "; give one that connects the fixed modules" : ""));
     }
   }
-  return std::vector<ElementSet>{std::move(modules).value()};
+  return std::vector<ElementSet>{std::move(modules)};
 }
 
 /// Modules that are in all starts.
@@ -198,6 +247,12 @@ base::Result<Setting> make_setting(const OrderTask& task, int thread_count) {
   auto target = model::Robot::create(task.target, thread_count);
   if (!target) {
     return target.error();
+  }
+  if (target.value().has_bodies() &&
+      (task.parallel_max > 1 || task.in_pieces || task.rule.reach != Reach::kFree)) {
+    return base::bad_input(
+        "the target has bodies, which come as wholes: expected one step after another in one "
+        "piece, and no ways to cells, which are those of single modules");
   }
   for (const auto& find_fault : {find_avoid_fault, find_source_fault}) {
     if (const auto fault = find_fault(task)) {

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "holdfast/model/connected_parts.hpp"
 #include "holdfast/model/facet_starts.hpp"
 
 namespace holdfast::plan {
@@ -60,6 +61,9 @@ std::vector<LostPart> PartFinder::find(const std::array<bool, kLossKindCount>& k
 void PartFinder::add_connections(std::vector<LostPart>& parts) const {
   const std::size_t root = at(tree_.sequence.front());
   for (const model::Connection& pair : robot_.connections()) {
+    if (robot_.body(pair) != model::OwnConnector::kNoBody) {
+      continue;
+    }
     const std::size_t a = at(pair.a);
     const std::size_t b = at(pair.b);
     LostPart part{.loss = {.kind = LossKind::kConnection,
@@ -123,9 +127,32 @@ LostPart PartFinder::without_module(std::size_t module) const {
 }
 
 void PartFinder::add_modules(std::vector<LostPart>& parts) const {
-  for (std::size_t i = 0; i < robot_.modules().size() && robot_.modules().size() > 1; ++i) {
-    parts.push_back(without_module(i));
+  const std::vector<std::int32_t> bodies = robot_.bodies();
+  auto modules_of = robot_.modules_by_body();
+  for (std::size_t i = 0; i < bodies.size() && bodies.size() > 1; ++i) {
+    if (bodies[i] == model::OwnConnector::kNoBody) {
+      parts.push_back(without_module(i));
+    } else if (auto found = modules_of.extract(bodies[i]);
+               !found.empty() && found.mapped().size() < bodies.size()) {
+      parts.push_back(without_body(bodies[i], std::move(found.mapped())));
+    }
   }
+}
+
+LostPart PartFinder::without_body(std::int32_t body, std::vector<std::int32_t> modules) const {
+  LostPart part{.loss = {.kind = LossKind::kModule,
+                         .cells = {robot_.modules()[at(modules.front())].cell, {}},
+                         .body = body},
+                .body = std::move(modules)};
+  model::ConnectedParts rest = model::connected_parts(
+      robot_.connections(), robot_.modules().size(),
+      [&](std::size_t, const model::Connection& pair) { return !part.lacks(pair); });
+  for (const auto& piece : rest.lists()) {
+    const bool falls = std::ranges::none_of(
+        piece, [&](std::int32_t module) { return is_held(robot_.modules()[at(module)]); });
+    part.fallen_count += falls && !part.has_lost(piece.front()) ? piece.size() : 0;
+  }
+  return part;
 }
 
 void PartFinder::add_feet(std::vector<LostPart>& parts) const {

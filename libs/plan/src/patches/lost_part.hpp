@@ -25,13 +25,25 @@ struct LostPart {
   Change change = {};
   std::optional<model::Connection> hanging = {};  ///< That beam.
   bool has_fixed = false;                         ///< Something fixed is lost.
+  /// The modules of a body that is lost, by index; `change` says nothing of it, so it takes a
+  /// check.
+  std::vector<std::int32_t> body = {};
 
   /// Whether a connection is not among those that are left.
   bool lacks(const model::Connection& pair) const {
+    if (has_lost(pair.a) || has_lost(pair.b)) {
+      return true;
+    }
     const auto is_same = [&](const model::Connection& other) {
       return pair.a == other.a && pair.b == other.b;
     };
     return (hanging && is_same(*hanging)) || std::ranges::any_of(change.lost_beams, is_same);
+  }
+
+  /// Whether a module is lost.
+  bool has_lost(std::int32_t index) const {
+    return (module && static_cast<std::int32_t>(*module) == index) ||
+           std::ranges::binary_search(body, index);
   }
 };
 
@@ -48,6 +60,7 @@ class PartFinder {
   void add_modules(std::vector<LostPart>& parts) const;
   void add_feet(std::vector<LostPart>& parts) const;
   LostPart without_module(std::size_t module) const;
+  LostPart without_body(std::int32_t body, std::vector<std::int32_t> modules) const;
 
   const model::Robot& robot_;
   DepthFirstTree tree_;

@@ -467,7 +467,7 @@ std::optional<double> PatchBound::without(const LostPart& part, const Case& give
 namespace {
 
 bool is_known_to_patches(const LostPart& part) {
-  return !part.is_apart && !part.has_fixed && part.fallen_count == 0;
+  return !part.is_apart && !part.has_fixed && part.fallen_count == 0 && part.body.empty();
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -111,6 +112,10 @@ class Explorer {
 
   bool is_dead(const ElementSet& state) const { return dead_.contains(state); }
 
+  bool comes_alone(Element element) const {
+    return !structure_.has_units() || structure_.unit(element).size() == 1;
+  }
+
   bool is_hopeless(const ElementSet& state) const {
     const Judgement* known = knowledge_.find(state);
     return is_dead(state) || (known != nullptr && !known->is_safe());
@@ -183,7 +188,7 @@ std::vector<Element> Explorer::propose() {
   ElementSet state = state_;
   while (run.size() < run_length_) {
     const auto is_open = [&](Element element) {
-      return !is_hopeless(changed(state, sense_, {&element, 1}));
+      return comes_alone(element) && !is_hopeless(changed(state, sense_, {&element, 1}));
     };
     const auto found = run.empty() ? next_single(is_open)
                                    : structure_.first_candidate(state, sense_, seed_, is_open);
@@ -247,7 +252,7 @@ bool Explorer::advance() {
 
 /// Tries the next group of several elements. False if none is left; true, too, if time is over.
 bool Explorer::take_group() {
-  if (options_.group_size == 1) {
+  if (options_.group_size == 1 && !structure_.has_units()) {
     return false;
   }
   if (!frames_.back().has_groups) {
@@ -385,17 +390,19 @@ Order order_closed(Closure closure, const Knowledge& knowledge) {
   return order;
 }
 
-/// Appends what `before` and one element more make of its state, if it was not seen, and then what
-/// these and yet another element make: a set depends not on the order in which it was made, so the
-/// first one will do.
+/// Appends what `before` and one unit more make of its state, if it was not seen, and then what
+/// these and yet another unit make: a set depends not on the order in which it was made, so the
+/// first one will do. Most units are single elements.
 void add_groups(GrowingStructure& structure, const ElementSet& state, Sense sense,
                 const OrderOptions& options, const Batch& before,
                 const std::function<bool()>& is_late, States& seen, std::vector<Batch>& groups) {
   const std::size_t begin = groups.size();
   for (const Element element : structure.candidates(state, sense, options.seed)) {
-    if (seen.insert(changed(state, sense, {&element, 1})).second) {
+    const Batch unit = structure.has_units() ? structure.unit(element) : Batch{element};
+    const bool has_room = before.empty() || before.size() + unit.size() <= options.group_size;
+    if (has_room && seen.insert(changed(state, sense, unit)).second) {
       groups.push_back(before);
-      groups.back().push_back(element);
+      groups.back().insert(groups.back().end(), unit.begin(), unit.end());
     }
   }
   const std::size_t end = groups.size();
@@ -404,8 +411,11 @@ void add_groups(GrowingStructure& structure, const ElementSet& state, Sense sens
       return;
     }
     const Batch group = groups[i];
-    add_groups(structure, changed(state, sense, {&group.back(), 1}), sense, options, group, is_late,
-               seen, groups);
+    if (group.size() < options.group_size) {
+      const auto unit = std::span(group).subspan(before.size());
+      add_groups(structure, changed(state, sense, unit), sense, options, group, is_late, seen,
+                 groups);
+    }
   }
 }
 

@@ -226,7 +226,7 @@ model::RobotSpec RobotState::spec(std::span<const std::int32_t> modules,
   std::ranges::copy_if(released, std::back_inserter(spec.released), are_there);
   for (const auto& [pair, own] : own_connectors_) {
     if (are_there(pair) && !released.contains(pair)) {
-      spec.own_connectors.push_back({pair, own.law, own.tag});
+      spec.own_connectors.push_back({pair, own.law, own.tag, own.body});
     }
   }
   return spec;

@@ -113,6 +113,9 @@ struct Extension {
   std::vector<ConnectionEntry> connections;
   bool joins_listed =
       false;  ///< Whether `connections` are all that there are of the file's modules.
+  /// Rigid pieces, such as bricks, by their cells: connections inside never part. All cells of a
+  /// body come in one step, and leave in one.
+  std::vector<std::vector<base::Cell>> bodies;
   std::vector<model::Obstacle> obstacles;
   std::vector<std::optional<Color>> obstacle_colors;  ///< By obstacle; empty if none has one.
   Attributes obstacle_list;                           ///< Of VisibleSim's <obstacleList>.

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -92,8 +93,12 @@ struct OwnConnector {
   ConnectorLaw law;
   /// What the caller calls it by; along steps it stays with the connection.
   std::int32_t tag = kNoTag;
+  /// The number of the body that both modules are in, if they are: a rigid piece of several
+  /// modules, such as a brick. The law limits nothing then, and nothing takes the connection away.
+  std::int32_t body = kNoBody;
 
   static constexpr std::int32_t kNoTag = -1;
+  static constexpr std::int32_t kNoBody = -1;
 
   friend bool operator==(const OwnConnector&, const OwnConnector&) = default;
 };
@@ -279,6 +284,18 @@ class Robot {
   /// The tag of a connection that has a law of its own; else OwnConnector::kNoTag.
   std::int32_t connector_tag(const Connection& connection) const;
 
+  /// The number of the body that a connection is inside of; else OwnConnector::kNoBody.
+  std::int32_t body(const Connection& connection) const;
+
+  /// Whether there are bodies of several modules.
+  bool has_bodies() const;
+
+  /// The number of the body that each module is in, or OwnConnector::kNoBody; by module.
+  std::vector<std::int32_t> bodies() const;
+
+  /// The indices of the modules of each body, ascending, by the body's number.
+  std::map<std::int32_t, std::vector<std::int32_t>> modules_by_body() const;
+
   /// The laws of all connections that there can be.
   std::span<const ConnectorLaw> connectors() const { return connectors_; }
 
@@ -339,6 +356,7 @@ class Robot {
   std::optional<std::string> take_kinds(const RobotSpec& spec, const CellIndex& index);
   std::optional<std::string> take_own_connectors(const RobotSpec& spec, const CellIndex& index);
   const ConnectorLaw* find_own_connector(const Connection& connection) const;
+  const OwnConnector* find_own_name(const Connection& connection) const;
   std::optional<std::string> take_loads(const RobotSpec& spec, const CellIndex& index);
 
   std::vector<Module> modules_;
@@ -362,7 +380,7 @@ class Robot {
   /// The places in the table of neighbours of connections that have a law of their own, ascending,
   /// with the index of the law.
   std::vector<std::pair<std::size_t, std::size_t>> own_connectors_;
-  std::vector<std::int32_t> own_tags_;  ///< Of these laws, in their order.
+  std::vector<OwnConnector> own_names_;  ///< What these laws are of, in their order.
   bool has_default_connectors_ = true;
   bool has_floor_ = false;
   std::int32_t support_z_ = 0;

@@ -10,13 +10,14 @@
 
 #include "holdfast/base/cell.hpp"
 #include "holdfast/base/lattice.hpp"
+#include "holdfast/model/robot.hpp"
 
 /// A single part of a robot that may be lost.
 namespace holdfast::plan {
 
 enum class LossKind : std::uint8_t {
   kConnection,  ///< Two modules touch without being connected.
-  kModule,      ///< A module is not there, nor what it carries.
+  kModule,      ///< A module, or a whole body, is not there, nor what it carries.
   kFoot,        ///< A facet does not touch the environment, or a module is no longer fixed.
 };
 
@@ -31,6 +32,8 @@ struct Loss {
   std::array<base::Cell, 2> cells = {};  ///< Of a connection; else the first is the module's.
   /// The direction of a foot from the module; none if that was fixed.
   std::optional<base::Direction> direction = {};
+  /// The number of the body that is lost as a whole, of which the first cell is one; else none.
+  std::int32_t body = model::OwnConnector::kNoBody;
 
   friend bool operator==(const Loss&, const Loss&) = default;
 };

@@ -34,6 +34,12 @@ class GrowingStructure {
   /// The whole has the elements 0 to element_count() - 1.
   virtual std::size_t element_count() const = 0;
 
+  /// Whether some elements come and go together only, at one instant.
+  virtual bool has_units() const { return false; }
+
+  /// The elements that come and go together with an element, itself among them.
+  virtual std::vector<Element> unit(Element element) const { return {element}; }
+
   /// Every element that can be added to the state (or removed from it) as far as geometry goes,
   /// the most promising first. What is not named is taken for impossible, so proofs rest on it. The
   /// list depends on the arguments alone; a seed other than 0 disturbs its order.
@@ -63,6 +69,7 @@ class GrowingStructure {
 
 struct OrderOptions {
   /// The most elements that are added, or removed, at once; only the state after it must be safe.
+  /// One unit may always be.
   std::size_t group_size = 1;
   /// Decides in which order candidates are tried; the same seed finds the same order.
   std::uint64_t seed = 0;

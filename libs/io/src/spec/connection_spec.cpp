@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
-#include "json/connection_spec.hpp"
+#include "spec/connection_spec.hpp"
 
 #include <fmt/format.h>
 
@@ -12,6 +12,7 @@
 
 #include "holdfast/plan/robot_state.hpp"
 #include "json/json_values.hpp"
+#include "spec/body_spec.hpp"
 #include "vocabulary.hpp"
 
 namespace holdfast::io {
@@ -60,8 +61,8 @@ std::optional<double> value_for(const ConnectorParameter& parameter, std::size_t
 /// Checks the pairs that a document names, and knows which they are.
 class NamedPairs {
  public:
-  explicit NamedPairs(const Document& document)
-      : lattice_(document.extension.lattice), cells_(cells_of(document)) {}
+  NamedPairs(const Document& document, const BodyIndex& bodies)
+      : lattice_(document.extension.lattice), cells_(cells_of(document)), bodies_(bodies) {}
 
   /// Takes a pair; an error if it is no pair of neighbours, or was taken before.
   std::optional<base::Error> take(const model::CellPair& pair, const JsonPlace& place) {
@@ -78,6 +79,12 @@ class NamedPairs {
           fmt::format("{}: expected two modules whose faces touch, found two that do not", text),
           place.pointer());
     }
+    if (const auto body = bodies_.inside(pair)) {
+      return base::bad_input(fmt::format("{} is inside body {}: expected nothing said of it, as it "
+                                         "never parts",
+                                         text, *body),
+                             place.pointer());
+    }
     if (!pairs_.insert(plan::ordered(pair)).second) {
       return base::bad_input(
           fmt::format("{}: expected each pair once in \"open\" and \"connections\" together, "
@@ -93,6 +100,7 @@ class NamedPairs {
  private:
   const base::Lattice& lattice_;
   std::set<base::Cell> cells_;
+  const BodyIndex& bodies_;
   std::set<model::CellPair> pairs_;
 };
 
@@ -111,26 +119,69 @@ std::map<base::Cell, const model::ModuleKind*> kinds_by_cell(
   return by_cell;
 }
 
-void add_laws(const Document& document, const std::vector<model::ModuleKind>& kinds,
-              const std::set<base::Cell>& cells, model::RobotSpec& spec) {
+/// The laws of connections by what modules they join.
+class KindLaws {
+ public:
+  KindLaws(const Document& document, const std::vector<model::ModuleKind>& kinds)
+      : lattice_(document.extension.lattice),
+        plain_(kinds.front()),
+        by_cell_(kinds_by_cell(document, kinds)) {}
+
+  static std::size_t direction(const base::Lattice& lattice, const model::CellPair& between) {
+    return base::at(base::index(*model::direction_between(lattice, between[0], between[1])));
+  }
+
+  /// The weaker of the connectors of two neighbours.
+  model::ConnectorLaw of(const model::CellPair& between) const {
+    const std::size_t along = direction(lattice_, between);
+    return model::weaker(kind_at(between[0]).connectors[along],
+                         kind_at(between[1]).connectors[along ^ 1U]);
+  }
+
+ private:
+  const model::ModuleKind& kind_at(const base::Cell& cell) const {
+    const auto found = by_cell_.find(cell);
+    return found == by_cell_.end() ? plain_ : *found->second;
+  }
+
+  const base::Lattice& lattice_;
+  const model::ModuleKind& plain_;
+  std::map<base::Cell, const model::ModuleKind*> by_cell_;
+};
+
+void add_laws(const Document& document, const KindLaws& laws, const std::set<base::Cell>& cells,
+              model::RobotSpec& spec) {
   const Extension& extension = document.extension;
-  const auto by_cell = kinds_by_cell(document, kinds);
-  const auto kind_at = [&](const base::Cell& cell) -> const model::ModuleKind& {
-    const auto found = by_cell.find(cell);
-    return found == by_cell.end() ? kinds.front() : *found->second;
-  };
   for (std::size_t i = 0; i < extension.connections.size(); ++i) {
     const auto& [between, connectors, scatter] = extension.connections[i];
     const bool is_plain = connectors == Connectors{} && scatter == Scatter{};
     if (is_plain || !cells.contains(between[0]) || !cells.contains(between[1])) {
       continue;
     }
-    const auto direction =
-        base::at(base::index(*model::direction_between(extension.lattice, between[0], between[1])));
-    model::ConnectorLaw law = model::weaker(kind_at(between[0]).connectors[direction],
-                                            kind_at(between[1]).connectors[direction ^ 1U]);
-    apply(connectors, extension.lattice, direction, law);
+    model::ConnectorLaw law = laws.of(between);
+    apply(connectors, extension.lattice, KindLaws::direction(extension.lattice, between), law);
     spec.own_connectors.push_back({between, law, static_cast<std::int32_t>(i)});
+  }
+}
+
+/// Gives connections inside bodies a law that limits nothing.
+void add_bodies(const Document& document, const KindLaws& laws, const std::set<base::Cell>& cells,
+                const BodyIndex& index, model::RobotSpec& spec) {
+  const base::Lattice& lattice = document.extension.lattice;
+  for (const std::vector<base::Cell>& body : document.extension.bodies) {
+    for (const base::Cell& cell : body) {
+      for (const base::Direction direction : base::directions(lattice)) {
+        const model::CellPair pair = {cell, base::neighbour(lattice, cell, direction)};
+        const auto number = index.inside(pair);
+        if (number && pair[0] < pair[1] && cells.contains(pair[0]) && cells.contains(pair[1])) {
+          const model::ConnectorLaw usual = laws.of(pair);
+          spec.own_connectors.push_back(
+              {.between = pair,
+               .law = {.lever_mm = usual.lever_mm, .bending = usual.bending},
+               .body = *number});
+        }
+      }
+    }
   }
 }
 
@@ -149,7 +200,8 @@ void apply(const Connectors& connectors, const base::Lattice& lattice, std::size
 
 bool has_connections(const Document& document) {
   const Extension& extension = document.extension;
-  return extension.joins_listed || !extension.open.empty() || !extension.connections.empty();
+  return extension.joins_listed || !extension.open.empty() || !extension.connections.empty() ||
+         !extension.bodies.empty();
 }
 
 std::set<base::Cell> cells_of(const Document& document) {
@@ -178,10 +230,14 @@ std::optional<base::Error> add_connections(const Document& document,
   if (!has_connections(document)) {
     return std::nullopt;
   }
+  if (auto error = find_bodies_fault(document)) {
+    return error;
+  }
   const Extension& extension = document.extension;
   const JsonPlace top;
   const JsonPlace connections = top.at("connections");
-  NamedPairs listed(document);
+  const BodyIndex bodies(document);
+  NamedPairs listed(document, bodies);
   for (std::size_t i = 0; i < extension.connections.size(); ++i) {
     const JsonPlace entry = connections.at(i);
     if (auto error = listed.take(extension.connections[i].between, entry.at(kBetweenKey))) {
@@ -201,7 +257,7 @@ std::optional<base::Error> add_connections(const Document& document,
     for (const base::Cell& cell : cells) {
       for (const base::Direction direction : base::directions(extension.lattice)) {
         const model::CellPair pair = {cell, base::neighbour(extension.lattice, cell, direction)};
-        if (cells.contains(pair[1]) && !listed.contains(pair)) {
+        if (cells.contains(pair[1]) && !listed.contains(pair) && !bodies.inside(pair)) {
           released.insert(plan::ordered(pair));
         }
       }
@@ -210,7 +266,9 @@ std::optional<base::Error> add_connections(const Document& document,
   std::ranges::copy_if(released, std::back_inserter(spec.released), [&](const auto& pair) {
     return cells.contains(pair[0]) && cells.contains(pair[1]);
   });
-  add_laws(document, kinds, cells, spec);
+  const KindLaws laws(document, kinds);
+  add_laws(document, laws, cells, spec);
+  add_bodies(document, laws, cells, bodies, spec);
   return std::nullopt;
 }
 

@@ -15,7 +15,8 @@ namespace holdfast::io {
 void apply(const Connectors& connectors, const base::Lattice& lattice, std::size_t direction,
            model::ConnectorLaw& law);
 
-/// Whether a document says of single pairs of neighbours that they are open, or how they hold.
+/// Whether a document says of single pairs of neighbours that they are open, or how they hold, or
+/// has bodies.
 bool has_connections(const Document& document);
 
 /// All cells in which modules are or come by steps; none where has_connections() is false.

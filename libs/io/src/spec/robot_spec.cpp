@@ -14,9 +14,9 @@
 #include "holdfast/io/document.hpp"
 #include "holdfast/io/lattice_names.hpp"
 #include "holdfast/model/robot_catalogue.hpp"
-#include "json/connection_spec.hpp"
 #include "json/json_values.hpp"
 #include "robot_defaults.hpp"
+#include "spec/connection_spec.hpp"
 #include "text_input.hpp"
 #include "vocabulary.hpp"
 
