@@ -107,7 +107,11 @@ inline void store_two(float* lanes, Quad quad) {
 inline Single load(const Six<float>& six) {
   Quad low;
   std::memcpy(&low, six.v, 16);
+#ifdef __AVX2__
+  return _mm256_set_m128(load_two(six.v + 4), low);
+#else
   return __builtin_shufflevector(low, load_two(six.v + 4), 0, 1, 2, 3, 4, 5, 6, 7);
+#endif
 }
 
 inline void store(Six<float>& six, Single value) {
