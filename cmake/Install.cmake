@@ -21,9 +21,6 @@ foreach(kind static shared)
   target_include_directories(${library} INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(${library} PRIVATE fmt::fmt pugixml::pugixml Threads::Threads
                         deflate ${CMAKE_DL_LIBS})
-  if(HOLDFAST_UNICORN)
-    target_link_libraries(${library} PRIVATE unicorn)
-  endif()
 endforeach()
 # Only holdfast's own names are seen from outside, not those of the libraries within.
 set(map ${PROJECT_SOURCE_DIR}/cmake/install/holdfast.map)
@@ -53,9 +50,7 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/holdfast-config.cmake
               ${CMAKE_CURRENT_BINARY_DIR}/holdfast-config-version.cmake
         DESTINATION ${package} COMPONENT development)
 file(RELATIVE_PATH prefix_from_package /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
-set(unicorn_module $<$<BOOL:${HOLDFAST_UNICORN}>:unicorn>)
-configure_file(cmake/install/holdfast.pc.in holdfast.pc.in @ONLY)
-file(GENERATE OUTPUT holdfast.pc INPUT ${CMAKE_CURRENT_BINARY_DIR}/holdfast.pc.in)
+configure_file(cmake/install/holdfast.pc.in holdfast.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/holdfast.pc
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
 

@@ -22,10 +22,6 @@ source=$tree/applicationsSrc/holdfast
 binary=$tree/applicationsBin/holdfast
 mark='# Written by ./dev visiblesim of holdfast.'
 
-# The emulator in libholdfast.a needs Unicorn where the build has found it.
-emulator=
-! grep -qsw unicorn "$build/holdfast.pc" || emulator=-lunicorn
-
 [ -f "$header" ] || fail "$tree is no VisibleSim: it has no simulatorCore/src/base/blockCode.h"
 grep -q addMessageEventFunc2 "$header" ||
   fail "this VisibleSim is too old: its BlockCode has no addMessageEventFunc2"
@@ -52,7 +48,7 @@ CORE = ../../simulatorCore
 OUT = ../../applicationsBin/holdfast/holdfast
 OBJECTS = main.o session.o holdfast_code.o change_event.o
 ARCHIVES = \$(BUILD)/integrations/visiblesim/libholdfast_visiblesim.a \$(BUILD)/libholdfast.a
-LIBRARIES = -lfmt -lpugixml -ldeflate $emulator -pthread
+LIBRARIES = -lfmt -lpugixml -ldeflate -pthread
 FLAGS = -std=c++20 -O2 -Wall -Wextra -MMD \\
   -I\$(HOLDFAST)/src -I\$(HOLDFAST)/block_code $includes -isystem \$(CORE)/src
 VISIBLESIM = -L\$(CORE)/lib -lsimBlinkyBlocks -lglut -lGL -lGLU -lGLEW -lmuparser -ldl

@@ -300,13 +300,13 @@ class Robot:
                 events: Iterable[Any] = (), progress: Progress = None) -> Run:
         """Lets the robot work its verdict out as firmware on emulated modules.
 
-        Needs the firmware's image ('./dev firmware'), and a package that was built where Unicorn is
-        installed. `seconds`: give up after so long on the robot. Events are those of `simulate`,
-        but for ``detach``, and ``flip``, ``reset``.
+        Needs the firmware's image ('./dev firmware'), Unicorn, and a package that was built where
+        it is installed. `seconds`: give up after so long on the robot. Events are those of
+        `simulate`, but for ``detach``, and ``flip``, ``reset``.
         """
         if not _core.can_emulate():
-            raise _core.Error('this package was built without Unicorn and cannot emulate; '
-                              "install libunicorn-dev and build it anew by './dev python'")
+            raise _core.Error('this package is without Unicorn and cannot emulate; install '
+                              "libunicorn2, or libunicorn-dev and build it anew by './dev python'")
         with told(progress, 'emulate') as tell:
             return Run._of(_core.emulate(self._held, image or find_image(), seed,
                                          seconds, events_of(events), tell))

@@ -45,7 +45,7 @@ for board in v2 v1; do
     2>"$work/log" || code=$?
   image=$prefix/share/holdfast/firmware/module_stm32f0.elf
   [ $board = v2 ] || image=$prefix/share/holdfast/firmware/v1/module_stm32f0.elf
-  if ! grep -qw unicorn "$build/holdfast.pc"; then
+  if grep -q '^HOLDFAST_UNICORN:.*NOTFOUND' "$build/CMakeCache.txt"; then
     grep -q "without Unicorn .* './dev firmware' in its sources" "$work/log"
   elif [ ! -f "$image" ]; then
     grep -q "no firmware image is here; the package holdfast-firmware has it" "$work/log"

@@ -160,6 +160,9 @@ class CheckRun {
 
   /// Refuses options that are for robots of one piece.
   std::optional<base::Error> find_pieces_fault(const Structure& structure) const {
+    if (structure.robot.pieces().empty()) {
+      return std::nullopt;
+    }
     const std::pair<const char*, bool> wishes[] = {
         {"--prove", options_.is_proof_wanted},
         {"--certificate", !options_.certificate.empty()},
@@ -173,7 +176,7 @@ class CheckRun {
          find_scatter(structure, read_scatter(options_.scatter)).has_value()}};
     const auto* const wish =
         std::ranges::find_if(wishes, [](const auto& one) { return one.second; });
-    if (structure.robot.pieces().empty() || wish == std::end(wishes)) {
+    if (wish == std::end(wishes)) {
       return std::nullopt;
     }
     return base::Error{.code = base::ErrorCode::kBadInput,

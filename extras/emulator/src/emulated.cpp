@@ -50,8 +50,9 @@ std::optional<base::Error> find_emulator_fault(const std::string& image) {
   if (!emulator::is_available()) {
     return base::Error{.code = base::ErrorCode::kUnsupported,
                        .message =
-                           "this holdfast was built without Unicorn and cannot emulate; "
-                           "'./dev firmware' in its sources installs it and builds one that can"};
+                           "this holdfast is without Unicorn and cannot emulate; install "
+                           "libunicorn2, or './dev firmware' in its sources installs what it needs "
+                           "and builds one that can"};
   }
   std::error_code code;
   if (!std::filesystem::is_regular_file(image, code)) {

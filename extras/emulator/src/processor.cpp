@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "processor.hpp"
 
+#include <dlfcn.h>
 #include <unicorn/unicorn.h>
 
 #include <array>
+#include <type_traits>
 
 #include "flash_memory.hpp"
 #include "holdfast/base/check.hpp"
@@ -23,17 +25,60 @@ struct Window {
 constexpr std::array<Window, 3> kWindows = {
     {{0x40000000, 0x24000}, {0x48000000, 0x2000}, {0xE000E000, 0x1000}}};
 
+/// What is called of Unicorn, by its own names. To load its library takes 4 ms, longer than most
+/// checks, so that is left until somebody emulates.
+struct Library {
+  decltype(&::uc_open) uc_open = nullptr;
+  decltype(&::uc_close) uc_close = nullptr;
+  decltype(&::uc_ctl) uc_ctl = nullptr;
+  decltype(&::uc_emu_start) uc_emu_start = nullptr;
+  decltype(&::uc_emu_stop) uc_emu_stop = nullptr;
+  decltype(&::uc_hook_add) uc_hook_add = nullptr;
+  decltype(&::uc_mem_map) uc_mem_map = nullptr;
+  decltype(&::uc_mem_read) uc_mem_read = nullptr;
+  decltype(&::uc_mem_write) uc_mem_write = nullptr;
+  decltype(&::uc_mmio_map) uc_mmio_map = nullptr;
+  decltype(&::uc_reg_read) uc_reg_read = nullptr;
+  decltype(&::uc_reg_write) uc_reg_write = nullptr;
+  bool is_there = false;
+};
+
+Library load() {
+  Library library;
+  void* const handle = dlopen("libunicorn.so.2", RTLD_NOW | RTLD_LOCAL);
+  if (handle == nullptr) {
+    return library;
+  }
+  const auto take = [handle](const char* name, auto& function) {
+    function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(dlsym(handle, name));
+    return function != nullptr;
+  };
+  library.is_there =
+      take("uc_open", library.uc_open) && take("uc_close", library.uc_close) &&
+      take("uc_ctl", library.uc_ctl) && take("uc_emu_start", library.uc_emu_start) &&
+      take("uc_emu_stop", library.uc_emu_stop) && take("uc_hook_add", library.uc_hook_add) &&
+      take("uc_mem_map", library.uc_mem_map) && take("uc_mem_read", library.uc_mem_read) &&
+      take("uc_mem_write", library.uc_mem_write) && take("uc_mmio_map", library.uc_mmio_map) &&
+      take("uc_reg_read", library.uc_reg_read) && take("uc_reg_write", library.uc_reg_write);
+  return library;
+}
+
+const Library& unicorn() {
+  static const Library kLibrary = load();
+  return kLibrary;
+}
+
 void check(uc_err error) { HOLDFAST_CHECK(error == UC_ERR_OK); }
 
 std::uint32_t register_of(uc_engine* engine, int name) {
   std::uint32_t value = 0;
-  check(uc_reg_read(engine, name, &value));
+  check(unicorn().uc_reg_read(engine, name, &value));
   return value;
 }
 
 }  // namespace
 
-bool is_available() { return true; }
+bool is_available() { return unicorn().is_there; }
 
 /// Unicorn's callbacks are C functions.
 struct Processor::Callbacks {
@@ -70,16 +115,16 @@ struct Processor::Callbacks {
     std::uint32_t bytes = image.flash_end() - kFlashBegin;
     if (image.writes_flash()) {
       bytes -= FlashMemory::kBytes;
-      check(uc_mmio_map(engine, kFlashBegin + bytes, FlashMemory::kBytes, &read_flash, self,
-                        &write_flash, self));
+      check(unicorn().uc_mmio_map(engine, kFlashBegin + bytes, FlashMemory::kBytes, &read_flash,
+                                  self, &write_flash, self));
     }
-    check(uc_mem_map(engine, kFlashBegin, bytes, UC_PROT_READ | UC_PROT_EXEC));
+    check(unicorn().uc_mem_map(engine, kFlashBegin, bytes, UC_PROT_READ | UC_PROT_EXEC));
   }
 
   template <std::size_t Index>
   static void map(uc_engine* engine, Processor* self) {
-    check(uc_mmio_map(engine, kWindows[Index].begin, kWindows[Index].size, &read<Index>, self,
-                      &write<Index>, self));
+    check(unicorn().uc_mmio_map(engine, kWindows[Index].begin, kWindows[Index].size, &read<Index>,
+                                self, &write<Index>, self));
   }
 };
 
@@ -90,12 +135,13 @@ Processor::Processor(const Image& image, CostTable& costs, Peripherals& peripher
       watcher_(watcher),
       watched_(watched),
       vectors_(image.at("holdfast_vectors")) {
-  check(uc_open(UC_ARCH_ARM, static_cast<uc_mode>(UC_MODE_THUMB | UC_MODE_MCLASS), &engine_));
-  check(uc_ctl_set_cpu_model(engine_, UC_CPU_ARM_CORTEX_M0));
+  check(unicorn().uc_open(UC_ARCH_ARM, static_cast<uc_mode>(UC_MODE_THUMB | UC_MODE_MCLASS),
+                          &engine_));
+  check(unicorn().uc_ctl_set_cpu_model(engine_, UC_CPU_ARM_CORTEX_M0));
   constexpr std::uint32_t kPageBytes = 4096;
   Callbacks::map_flash(engine_, image, this);
-  check(uc_mem_map(engine_, kUniqueNumber & ~(kPageBytes - 1), kPageBytes, UC_PROT_READ));
-  check(uc_mem_map(engine_, kRamBegin, kRamBytes, UC_PROT_READ | UC_PROT_WRITE));
+  check(unicorn().uc_mem_map(engine_, kUniqueNumber & ~(kPageBytes - 1), kPageBytes, UC_PROT_READ));
+  check(unicorn().uc_mem_map(engine_, kRamBegin, kRamBytes, UC_PROT_READ | UC_PROT_WRITE));
   Callbacks::map<0>(engine_, this);
   Callbacks::map<1>(engine_, this);
   Callbacks::map<2>(engine_, this);
@@ -103,16 +149,17 @@ Processor::Processor(const Image& image, CostTable& costs, Peripherals& peripher
     write(segment.address, segment.bytes);
   }
   uc_hook hook = 0;
-  check(uc_hook_add(engine_, &hook, UC_HOOK_BLOCK, reinterpret_cast<void*>(&Callbacks::block),
-                    static_cast<void*>(this), std::uint64_t{1}, std::uint64_t{0}));
+  check(unicorn().uc_hook_add(engine_, &hook, UC_HOOK_BLOCK,
+                              reinterpret_cast<void*>(&Callbacks::block), static_cast<void*>(this),
+                              std::uint64_t{1}, std::uint64_t{0}));
   reset();
 }
 
-Processor::~Processor() { uc_close(engine_); }
+Processor::~Processor() { unicorn().uc_close(engine_); }
 
 void Processor::reset() {
   const std::uint32_t stack = word(vectors_);
-  check(uc_reg_write(engine_, UC_ARM_REG_SP, &stack));
+  check(unicorn().uc_reg_write(engine_, UC_ARM_REG_SP, &stack));
   jump(word(vectors_ + 4));
 }
 
@@ -127,21 +174,21 @@ bool Processor::run(Cycles limit) {
   // No block of this program is here.
   constexpr std::uint64_t kNowhere = 0xfffffffe;
   limit_ = limit;
-  const uc_err error = uc_emu_start(engine_, program_counter_ | 1U, kNowhere, 0, 0);
+  const uc_err error = unicorn().uc_emu_start(engine_, program_counter_ | 1U, kNowhere, 0, 0);
   program_counter_ = register_of(engine_, UC_ARM_REG_PC);
   return error == UC_ERR_OK;
 }
 
 void Processor::stop() {
   if_taken_ = 0;
-  uc_emu_stop(engine_);
+  unicorn().uc_emu_stop(engine_);
 }
 
 void Processor::enter_block(std::uint64_t address, std::uint32_t size) {
   cycles_ += address == next_ ? 0 : if_taken_;
   if_taken_ = 0;
   if (cycles_ >= limit_) {
-    uc_emu_stop(engine_);  // Before the block is run; it comes here again.
+    unicorn().uc_emu_stop(engine_);  // Before the block is run; it comes here again.
     return;
   }
   BlockCost fresh;
@@ -172,11 +219,11 @@ void Processor::learn(std::uint64_t address, std::uint32_t size, BlockCost& cost
 }
 
 void Processor::read(std::uint32_t address, std::span<std::uint8_t> bytes) const {
-  check(uc_mem_read(engine_, address, bytes.data(), bytes.size()));
+  check(unicorn().uc_mem_read(engine_, address, bytes.data(), bytes.size()));
 }
 
 void Processor::write(std::uint32_t address, std::span<const std::uint8_t> bytes) {
-  check(uc_mem_write(engine_, address, bytes.data(), bytes.size()));
+  check(unicorn().uc_mem_write(engine_, address, bytes.data(), bytes.size()));
 }
 
 std::uint32_t Processor::word(std::uint32_t address) const {

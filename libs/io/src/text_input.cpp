@@ -45,6 +45,10 @@ std::size_t utf8_length(std::string_view text) {
 std::optional<std::size_t> find_bad_byte(std::string_view text) {
   std::size_t offset = 0;
   while (offset < text.size()) {
+    if (static_cast<signed char>(text[offset]) > 0) {
+      ++offset;
+      continue;
+    }
     const std::size_t length = utf8_length(text.substr(offset));
     if (length == 0 || text[offset] == '\0') {
       return offset;

@@ -60,18 +60,6 @@ ConnectionResult ConnectionLaws::general_result(const model::Connection& pair, c
           .torsion_nmm = force.torsion_nmm};
 }
 
-double ConnectionLaws::load_ratio(const model::Connection& pair, const Vecs& high,
-                                  const Vecs& low) const {
-  return low.empty() ? load_ratio(pair, high[base::at(pair.a)], high[base::at(pair.b)])
-                     : load_ratio(pair, relative_motion(pair, high, low), Vec{});
-}
-
-ConnectionResult ConnectionLaws::result(const model::Connection& pair, const Vecs& high,
-                                        const Vecs& low) const {
-  return low.empty() ? result(pair, high[base::at(pair.a)], high[base::at(pair.b)])
-                     : result(pair, relative_motion(pair, high, low), Vec{});
-}
-
 double ConnectionLaws::gap_mm(const model::Connection& pair, const Vecs& high,
                               const Vecs& low) const {
   const Vec force =

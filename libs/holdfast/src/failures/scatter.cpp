@@ -51,6 +51,10 @@ void take_strengths(const io::Extension& extension, const model::Robot& robot,
                     const ScatterWish& wish, StrengthScatter& scatter) {
   const std::vector<double> of_kind =
       by_kind(extension, robot.kinds().size(), &io::Scatter::strength_cv);
+  scatter.cv = std::max(verdict::kCvMin, wish.strength_cv.value_or(of_kind.front()));
+  if (extension.connections.empty() && are_all(of_kind, of_kind.front())) {
+    return;
+  }
   std::vector<double> cvs;
   std::vector<verdict::StrengthDistribution> distributions;
   for (const model::Connection& pair : robot.connections()) {
@@ -63,7 +67,6 @@ void take_strengths(const io::Extension& extension, const model::Robot& robot,
                                 ? scatter.distribution
                                 : own->distribution.value_or(scatter.distribution));
   }
-  scatter.cv = std::max(verdict::kCvMin, wish.strength_cv.value_or(of_kind.front()));
   scatter.cv = cvs.empty() ? scatter.cv : *std::ranges::max_element(cvs);
   if (!are_all(cvs, scatter.cv)) {
     scatter.own_cv = std::move(cvs);

@@ -94,18 +94,13 @@ inline Single product(const ClusterView<float>& level, const Six<float>* z, std:
   return multiply(level.diagonal[level.type[p]], z[p]) + neighbour_sum(level, z, p);
 }
 
-inline Wide widened(const Six<float>& six) {
-  const Single u = load(six);
-  return {low(u), high(u)};
-}
-
 /// What the two neighbours on an axis contribute.
 template <int kAxis>
 inline Wide wide_axis_sum(const AxesView<float>& level, const Six<float>* p, std::size_t node) {
   constexpr int kRow = kBeamLengthMax + 1;
   const std::int32_t* const other = level.stencil.other + 6 * node;
-  const Wide plus = widened(p[other[2 * kAxis]]);
-  const Wide minus = widened(p[other[2 * kAxis + 1]]);
+  const Wide plus = load_wide(p[other[2 * kAxis]]);
+  const Wide minus = load_wide(p[other[2 * kAxis + 1]]);
   if (level.stencil.kind == nullptr) {
     const BeamRow<double>& beam = level.stencil.beams_double[2 * kAxis * kRow + 1];
     return load(beam.direct) * (plus + minus) + load(beam.crossed) * swap<kAxis>(plus - minus);
@@ -119,7 +114,8 @@ inline Wide wide_axis_sum(const AxesView<float>& level, const Six<float>* p, std
 }
 
 /// (K p)_node of the finest level, in double precision.
-inline Wide wide_product(const AxesView<float>& level, const Six<float>* p, std::size_t node) {
+[[gnu::always_inline]] inline Wide wide_product(const AxesView<float>& level, const Six<float>* p,
+                                                std::size_t node) {
   Wide sum = wide_axis_sum<0>(level, p, node) + wide_axis_sum<1>(level, p, node) +
              wide_axis_sum<2>(level, p, node);
   const Block<double>& diagonal = level.diagonal_double[level.type[node]];
@@ -133,18 +129,19 @@ inline Wide wide_product(const AxesView<float>& level, const Six<float>* p, std:
 }
 
 /// (K p)_node of a finest level in compressed rows, in double precision.
-inline Wide wide_product(const ClusterView<float>& level, const Six<float>* p, std::size_t node) {
-  Wide sum = multiply(level.diagonal_double[level.type[node]], widened(p[node]));
+[[gnu::always_inline]] inline Wide wide_product(const ClusterView<float>& level,
+                                                const Six<float>* p, std::size_t node) {
+  Wide sum = multiply(level.diagonal_double[level.type[node]], load_wide(p[node]));
   if (level.stencil.other != nullptr) {
     const std::int32_t* other = level.stencil.other + 2 * level.stencil.pair_count * node;
     for (std::size_t k = 0; k < level.stencil.pair_count; ++k) {
-      sum += pair_product(level.stencil.rows_double[k], widened(p[other[2 * k]]),
-                          widened(p[other[2 * k + 1]]));
+      sum += pair_product(level.stencil.rows_double[k], load_wide(p[other[2 * k]]),
+                          load_wide(p[other[2 * k + 1]]));
     }
     return sum;
   }
   for (std::int32_t e = level.start[node]; e < level.start[node + 1]; ++e) {
-    sum += multiply(level.blocks_double[level.block[e]], widened(p[level.other[e]]));
+    sum += multiply(level.blocks_double[level.block[e]], load_wide(p[level.other[e]]));
   }
   return sum;
 }

@@ -3,6 +3,9 @@
 #pragma once
 
 #include <cstring>
+#ifdef __AVX2__
+#include <immintrin.h>
+#endif
 
 #include "multigrid/kernels/kernels.hpp"
 #include "multigrid/kernels/split_numbers.hpp"
@@ -104,7 +107,11 @@ inline void store_two(float* lanes, Quad quad) {
 inline Single load(const Six<float>& six) {
   Quad low;
   std::memcpy(&low, six.v, 16);
+#ifdef __AVX2__
+  return _mm256_set_m128(load_two(six.v + 4), low);
+#else
   return __builtin_shufflevector(low, load_two(six.v + 4), 0, 1, 2, 3, 4, 5, 6, 7);
+#endif
 }
 
 inline void store(Six<float>& six, Single value) {
@@ -118,13 +125,18 @@ inline void store(Six<double>& six, const Wide& value) {
   std::memcpy(six.v + 4, &value.high, 16);
 }
 
-inline Double low(Single a) {
-  return __builtin_convertvector(__builtin_shufflevector(a, a, 0, 1, 2, 3), Double);
+/// Converts in one instruction, of which g++ 12 makes five.
+inline Double widened(Quad a) {
+#ifdef __AVX2__
+  return _mm256_cvtps_pd(a);
+#else
+  return __builtin_convertvector(a, Double);
+#endif
 }
 
-inline Double high(Single a) {
-  return __builtin_convertvector(__builtin_shufflevector(a, a, 4, 5, 6, 7), Double);
-}
+inline Double low(Single a) { return widened(__builtin_shufflevector(a, a, 0, 1, 2, 3)); }
+
+inline Double high(Single a) { return widened(__builtin_shufflevector(a, a, 4, 5, 6, 7)); }
 
 inline Double low(const Wide& a) { return a.low; }
 
@@ -132,8 +144,9 @@ inline Double high(const Wide& a) { return a.high; }
 
 /// Loads six numbers in double precision, whatever theirs is.
 inline Wide load_wide(const Six<float>& six) {
-  const Single value = load(six);
-  return {low(value), high(value)};
+  Quad low;
+  std::memcpy(&low, six.v, 16);
+  return {widened(low), widened(load_two(six.v + 4))};
 }
 
 inline Wide load_wide(const Six<double>& six) { return load(six); }
@@ -150,13 +163,13 @@ inline void store_rounded(Six<float>& six, Double low, Double high) {
 inline Double joined_lanes(Double rounded, Shorts low) {
   Places places;
   std::memcpy(&places, &rounded, sizeof places);
-  places += __builtin_convertvector(__builtin_convertvector(low, Ints) * kUnit, Places);
+  places += __builtin_convertvector(low, Places) * kUnit;
   std::memcpy(&rounded, &places, sizeof rounded);
   return rounded;
 }
 
 inline Shorts low_lanes(Double value, Quad rounded) {
-  const Double near = __builtin_convertvector(rounded, Double);
+  const Double near = widened(rounded);
   Places places;
   Places near_places;
   Ints bits;
@@ -172,12 +185,12 @@ inline Shorts low_lanes(Double value, Quad rounded) {
 }
 
 inline Wide load(const SplitView<float>& split, std::size_t node) {
-  const Single rounded = load(split.rounded[node]);
+  const Wide rounded = load_wide(split.rounded[node]);
   Shorts four;
   Shorts two = {};
   std::memcpy(&four, split.low + 6 * node, 8);
   std::memcpy(&two, split.low + 6 * node + 4, 4);
-  return {joined_lanes(low(rounded), four), joined_lanes(high(rounded), two)};
+  return {joined_lanes(rounded.low, four), joined_lanes(rounded.high, two)};
 }
 
 inline Wide load(const SplitView<double>& split, std::size_t node) {

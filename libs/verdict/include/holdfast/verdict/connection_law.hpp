@@ -100,8 +100,15 @@ class ConnectionLaws {
 
   /// The load ratio from all modules' displacements, with what is to be added to them for 106 bits,
   /// or nothing.
-  double load_ratio(const model::Connection& pair, const Vecs& high, const Vecs& low) const;
-  ConnectionResult result(const model::Connection& pair, const Vecs& high, const Vecs& low) const;
+  double load_ratio(const model::Connection& pair, const Vecs& high, const Vecs& low) const {
+    return low.empty() ? load_ratio(pair, high[base::at(pair.a)], high[base::at(pair.b)])
+                       : load_ratio(pair, relative_motion(pair, high, low), Vec{});
+  }
+
+  ConnectionResult result(const model::Connection& pair, const Vecs& high, const Vecs& low) const {
+    return low.empty() ? result(pair, high[base::at(pair.a)], high[base::at(pair.b)])
+                       : result(pair, relative_motion(pair, high, low), Vec{});
+  }
 
   /// The limit that a connection's load ratio is of, and the ratios of all its limits.
   model::Limit limit(const model::Connection& pair, const ConnectionResult& result) const {
