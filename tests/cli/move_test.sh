@@ -96,6 +96,7 @@ expect_refusal 65 '^holdfast: no.json: no such file' row.json bend.json --keep n
 expect_refusal 65 '.1,0,1. is to be avoided, but the target' row.json bend.json --avoid 0,0,1:2,0,1
 expect_refusal 65 '.2,0,0. is to be avoided, but the robot' row.json bend.json --avoid 2,0,0
 expect_exit 64 move row.json bend.json --keep 0:0
+expect_exit 64 move - bend.json --keep - <foot.json
 expect_exit 64 move row.json bend.json --avoid foot.json
 expect_exit 64 move row.json bend.json --avoid 0,0,0:999,999,1
 expect_exit 64 move row.json bend.json --keep foot.json -o foot.json

@@ -32,7 +32,8 @@ std::optional<plan::CellBox> avoided_box(const std::string& text) {
 
 /// Whether a text that is to be cells or a file can be no file that anybody means.
 bool is_mistyped_cell(const std::string& text) {
-  return !read_cell_or_box(text) && text.find_first_not_of("0123456789,:-() ") == std::string::npos;
+  return text != "-" && !read_cell_or_box(text) &&
+         text.find_first_not_of("0123456789,:-() ") == std::string::npos;
 }
 
 }  // namespace
