@@ -271,6 +271,9 @@ def commands(scenarios, tests):
     yield ['move', f'{plan}/around_arm_from.json', f'{plan}/around_arm_to.json', '--pivot']
     yield ['move', 'row.json', 'shifted.json', '--within', '0,0,0:4,0,0']
     yield ['move', 'row.json', 'leaning.json']
+    yield ['move', 'row.json', '--continue', 'row_moves.json', '--at', '1']
+    yield ['move', 'row.json', 'shifted.json', '--within', '0,0,0:4,0,0', '--keep', '2,0,0',
+           '--avoid', '1,0,1']
     yield ['move', 'row.json', 'shifted.json', '--scatter', '50%', '--lose-one', '--lose', 'feet']
     yield from (['simulate', path] for path in (safe, breaks, topples, 'latched.json'))
     yield ['simulate', safe, '--link', 'unit', '--kill', '2,1,1@5', '--plan', '3,1,2@1']
@@ -316,6 +319,7 @@ def main(program, repository, image=None):
         run('generate', 'tower', '7000', '-o', 'slender.json')
         run('generate', 'cube', '15', '-o', 'large.json')
         run('order', 'row.json', '-o', 'row_plan.json')
+        run('move', 'row.json', 'shifted.json', '-o', 'row_moves.json')
         run('move', f'{repository}/scenarios/plan/around_arm_from.json',
             f'{repository}/scenarios/plan/around_arm_to.json', '--geometry-only', '-o',
             'walk_to_topple.json')

@@ -307,9 +307,15 @@ class Order(_Texts, _Judgements, _Sought):
         """Where there is no order: ``supports`` or ``temporary`` modules that would suffice.
 
         Or, where only the ways bar it, another ``source``, or the ``reach`` with which there is
-        one. Cells are (n, 3); ``reach`` is None where it has no part.
+        one. Cells are (n, 3); ``reach`` is None where it has no part. ``pieces``: whether there is
+        an order with pieces.
         """
         return self._held.help
+
+    @property
+    def kept_count(self) -> Optional[int]:
+        """Where a plan is gone on with: how many of its steps are the last ones; else None."""
+        return self._held.kept_count
 
     def robot(self) -> Robot:
         """The start with the order as its steps, for `steps`; of NOT_FOUND as far as it got.
@@ -357,6 +363,11 @@ class Moves(_Texts, PlanAnswers, _Sought):
     def state_count(self) -> int:
         """Moves judged in all."""
         return self._held.state_count
+
+    @property
+    def kept_count(self) -> Optional[int]:
+        """Where a plan is gone on with: how many of its steps are the last ones; else None."""
+        return self._held.kept_count
 
     def robot(self) -> Robot:
         """The start with the moves as its steps, for `steps`."""

@@ -3,9 +3,10 @@
 """What may come next: places for a module, steps, orders, moves."""
 from __future__ import annotations
 
+import json
 import math
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 from . import _core
@@ -18,6 +19,9 @@ from ._robot import Robot, read_robot
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
+
+OnStep = Optional[Callable[[dict[str, Any]], object]]
+"""What is called with each step of a plan, as a dictionary."""
 
 
 def _robot(source: Union[Robot, Path], unsaid: Optional[str] = None) -> Robot:
@@ -85,12 +89,24 @@ def steps(robot: Union[Robot, Path], plan: Optional[Sequence[Mapping[str, Any]]]
     return judged
 
 
-def order(target: Union[Robot, Path], *, start: Optional[Cells] = None, reach: str = 'free',
-          source: Optional[Cell] = None, avoid: Optional[Cells] = None, group: int = 1,
-          parallel: Union[int, str] = 1, pieces: bool = False, reverse: bool = False,
-          exact: bool = False, seed: int = 0, seconds: float = 300, help_seconds: float = 0,
-          threads: int = 0, safety_factor: Optional[float] = None,
-          progress: Progress = None, **questions: Unpack[PlanQuestions]) -> Order:
+def _step(line: str) -> dict[str, Any]:
+    step: dict[str, Any] = json.loads(line)
+    return step
+
+
+def _expect_at(plan: Union[Robot, Path, None], at: Optional[int]) -> None:
+    if at is not None and plan is None:
+        raise ValueError('at: expected continue_ beside it, the plan whose steps are done')
+
+
+def order(target: Union[Robot, Path], *, start: Optional[Cells] = None,
+          continue_: Union[Robot, Path, None] = None, at: Optional[int] = None,
+          reach: str = 'free', source: Optional[Cell] = None, avoid: Optional[Cells] = None,
+          keep: Optional[Cells] = None, group: int = 1, parallel: Union[int, str] = 1,
+          pieces: bool = False, reverse: bool = False, exact: bool = False, seed: int = 0,
+          seconds: float = 300, help_seconds: float = 0, threads: int = 0,
+          safety_factor: Optional[float] = None, progress: Progress = None,
+          on_step: OnStep = None, **questions: Unpack[PlanQuestions]) -> Order:
     """In which order can a robot be built so that it is safe all the way?
 
     Parameters
@@ -100,11 +116,17 @@ def order(target: Union[Robot, Path], *, start: Optional[Cells] = None, reach: s
     start
         Cells of the modules that are there at first; else the fixed modules, or one that the search
         chooses.
+    continue_, at
+        A plan to go on with, as of `Order.robot`, or a file: its last steps are kept as far as they
+        are safe (`Order.kept_count`). `at` of its steps are done, and `target` is the robot that it
+        was made for; without `at` `target` is the robot as it is now.
     reach, source
         How a module gets to its cell: ``free``, any cell; ``line``, a straight way in; ``surface``,
         sliding along the robot from `source`.
     avoid
         Cells that bar these ways and carry nothing.
+    keep
+        Cells of modules that no step attaches or detaches: they are there at first, and to the end.
     group
         Modules that are attached at the same instant at most, 1 to 16: states in between are not
         judged.
@@ -126,43 +148,78 @@ def order(target: Union[Robot, Path], *, start: Optional[Cells] = None, reach: s
         As of `Robot.check`.
     progress
         Called with (states, modules now, modules at the furthest state).
+    on_step
+        Called with a dictionary for the ``start`` of an order that is found and for each of its
+        steps, the keys of ``holdfast order --stream``, as soon as it is certified and will not be
+        taken back: early with `parallel`, else when the search ends. What it raises ends the
+        search.
     questions
         `PlanQuestions` of the order that is found: `Order.reliability` and `Order.lose_one`.
 
     >>> order(Robot([[0, 0, 0], [1, 0, 0], [0, 0, 1]]))
     <holdfast.Order found: 2 steps>
     """
+    _expect_at(continue_, at)
+    if continue_ is not None and start is not None:
+        raise ValueError('start and continue_: expected one of them')
+    plan = None if continue_ is None else _robot(continue_)._asked(safety_factor)
+    ways = {'reach': reach, 'source': source, 'avoid': avoid, 'keep': keep}
+    listener = None if on_step is None else lambda line: on_step(_step(line))
     with told(progress, 'order') as tell:
-        found: Order = Order._of(_core.order(_robot(target)._asked(safety_factor), start,
-                                             reach, source, avoid, group, parallel, pieces,
-                                             reverse, exact, seed, seconds, help_seconds, threads,
-                                             asked_of('order', questions), tell))
+        found: Order = Order._of(_core.order(_robot(target)._asked(safety_factor), start, plan, at,
+                                             ways, group, parallel, pieces, reverse, exact, seed,
+                                             seconds, help_seconds, threads,
+                                             asked_of('order', questions), tell, listener))
     return found
 
 
-def move(start: Union[Robot, Path], target: Union[Robot, Path], *, pivots: bool = False,
-         motions: Union[Path, None] = None, within: Optional[Cells] = None,
+def move(start: Union[Robot, Path], target: Union[Robot, Path, None] = None, *,
+         continue_: Union[Robot, Path, None] = None, at: Optional[int] = None,
+         pivots: bool = False, motions: Union[Path, None] = None, within: Optional[Cells] = None,
+         avoid: Optional[Cells] = None, keep: Optional[Cells] = None,
          ignores_mechanics: bool = False, seed: int = 0, seconds: float = 300, threads: int = 0,
-         safety_factor: Optional[float] = None, progress: Progress = None,
+         safety_factor: Optional[float] = None, progress: Progress = None, on_step: OnStep = None,
          **questions: Unpack[PlanQuestions]) -> Moves:
     """How does a robot get from one shape to another, module by module?
 
     `motions`: those that a module has, ``'pivoting'`` (cubes that turn about edges; `pivots` says
     the same), ``'catoms3D'``, or a file. `within`: two cells, the corners of a box
-    that modules stay in. `safety_factor`: as of `Robot.check`. `progress` is called with (moves
+    that modules stay in. `avoid`: cells that no module enters or sweeps. `keep`: cells of modules
+    that do not move. `safety_factor`: as of `Robot.check`. `progress` is called with (moves
     judged, moves to the target at least). `PlanQuestions` are asked of the plan that is found:
     `Moves.reliability` and `Moves.lose_one`.
 
+    `continue_` instead of `target`: a plan to go on with, as of `Moves.robot`, or a file. Its last
+    steps are kept as far as they are safe (`Moves.kept_count`). `at` of its steps are done, and
+    `start` is the robot that it was made for; without `at` `start` is the robot as it is now.
+
+    `on_step` is called with a dictionary for each step of a plan that is found, the keys of
+    ``holdfast move --stream``, when the search ends.
+
     >>> row = Robot([[0, 0, 0], [1, 0, 0], [2, 0, 0]])
-    >>> move(row, Robot([[0, 0, 0], [1, 0, 0], [1, 0, 1]]))
+    >>> moves = move(row, Robot([[0, 0, 0], [1, 0, 0], [1, 0, 1]]), avoid=[[2, 0, 1]])
+    >>> moves
+    <holdfast.Moves found: 2 steps>
+    >>> move(row, continue_=moves.robot(), at=1)
     <holdfast.Moves found: 1 step>
     """
     if pivots and motions is not None:
         raise ValueError('pivots and motions: expected one of them')
-    ways = 'pivoting' if pivots else _motions(motions)
+    _expect_at(continue_, at)
+    end = target if continue_ is None else continue_
+    if end is None or (target is not None and continue_ is not None):
+        raise ValueError('target and continue_: expected one of them')
+    if on_step is not None and ignores_mechanics:
+        raise ValueError('on_step and ignores_mechanics: steps that need not be safe are not told')
+    motion_name = 'pivoting' if pivots else _motions(motions)
+    ways = {'within': within, 'avoid': avoid, 'keep': keep}
     with told(progress, 'move') as tell:
         found: Moves = Moves._of(_core.move(_robot(start)._asked(safety_factor),
-                                            _robot(target)._asked(safety_factor), ways,
-                                            within, ignores_mechanics, seed, seconds, threads,
+                                            _robot(end)._asked(safety_factor),
+                                            continue_ is not None, at, motion_name, ways,
+                                            ignores_mechanics, seed, seconds, threads,
                                             asked_of('move', questions), tell))
+    if on_step is not None:
+        for line in found._held.lines().splitlines()[:-1]:
+            on_step(_step(line))
     return found

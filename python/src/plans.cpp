@@ -216,52 +216,88 @@ std::size_t parallel_of(const py::handle& given) {
   return kAll;
 }
 
-std::shared_ptr<FoundOrder> order(const Structure& target, const py::handle& start,
-                                  const py::handle& reach_name, const py::handle& source,
-                                  const py::handle& avoid, const py::handle& group,
-                                  const py::handle& parallel, bool in_pieces, bool is_reversed,
-                                  bool is_exact, const py::handle& seed, const py::handle& seconds,
-                                  const py::handle& help_seconds, const py::handle& threads,
-                                  const py::dict& asked, py::object progress) {
-  Watch watch(std::move(progress));
-  OrderRequest request;
-  request.group_size = integer_of(group, "group", 1, 16);
-  request.parallel_max = parallel_of(parallel);
-  if (request.group_size > 1 && request.parallel_max > 1) {
-    throw Error("group and parallel exclude each other");
+/// A box of one cell for each of the cells; none where none is given.
+std::vector<plan::CellBox> boxes_of(const py::handle& given, const char* what) {
+  std::vector<plan::CellBox> boxes;
+  for (const base::Cell& cell :
+       given.is_none() ? std::vector<base::Cell>() : cells_of(given, what)) {
+    boxes.push_back({.low = cell, .high = cell});
   }
-  request.in_pieces = in_pieces;
-  request.is_reversed = is_reversed;
-  request.seed = seed_of(seed);
-  request.seconds_max = seconds_of(seconds, "seconds");
-  request.help_seconds_max = seconds_of(help_seconds, "help_seconds");
-  request.is_exact = is_exact;
-  request.thread_count = thread_count_of(threads);
+  return boxes;
+}
+
+std::optional<std::size_t> done_count_of(const py::handle& given) {
+  return given.is_none() ? std::optional<std::size_t>() : integer_of(given, "at", 0, 1'000'000'000);
+}
+
+/// What modules an order begins with and keeps, and how others get to their cells.
+void take_ways(const py::handle& start, const py::dict& ways, OrderRequest& request) {
   if (!start.is_none()) {
     request.start = cells_of(start, "start");
   }
-  const std::string reach = utf8_of(reach_name, "reach");
+  const std::string reach = utf8_of(ways["reach"], "reach");
   request.rule.reach = reach == "line"      ? plan::Reach::kLine
                        : reach == "surface" ? plan::Reach::kSurface
                                             : plan::Reach::kFree;
   if (reach != plan::name(request.rule.reach)) {
     throw Error("reach: expected free, line or surface, found '" + reach + "'");
   }
-  if (!source.is_none()) {
-    request.rule.source = cell_of(source, "source");
+  if (!ways["source"].is_none()) {
+    request.rule.source = cell_of(ways["source"], "source");
   }
-  if (!avoid.is_none()) {
-    request.rule.avoid = cells_of(avoid, "avoid");
+  if (!ways["avoid"].is_none()) {
+    request.rule.avoid = cells_of(ways["avoid"], "avoid");
   }
+  request.keep = boxes_of(ways["keep"], "keep");
   if ((reach == "surface") != request.rule.source.has_value()) {
     throw Error("reach 'surface' and source belong together");
   }
+}
+
+/// How many modules come at a time, and in how many pieces.
+void take_groups(const py::handle& group, const py::handle& parallel, bool in_pieces,
+                 OrderRequest& request) {
+  request.group_size = integer_of(group, "group", 1, 16);
+  request.parallel_max = parallel_of(parallel);
+  if (request.group_size > 1 && request.parallel_max > 1) {
+    throw Error("group and parallel exclude each other");
+  }
+  request.in_pieces = in_pieces;
+}
+
+/// `old`: a plan that is gone on with, or none; `on_step` is called with each line of JSON of a
+/// step.
+std::shared_ptr<FoundOrder> order(const Structure& target, const py::handle& start,
+                                  const SharedStructure& old, const py::handle& at,
+                                  const py::dict& ways, const py::handle& group,
+                                  const py::handle& parallel, bool in_pieces, bool is_reversed,
+                                  bool is_exact, const py::handle& seed, const py::handle& seconds,
+                                  const py::handle& help_seconds, const py::handle& threads,
+                                  const py::dict& asked, py::object progress, py::object on_step) {
+  Watch watch(std::move(progress));
+  OrderRequest request;
+  take_groups(group, parallel, in_pieces, request);
+  request.is_reversed = is_reversed;
+  request.seed = seed_of(seed);
+  request.seconds_max = seconds_of(seconds, "seconds");
+  request.help_seconds_max = seconds_of(help_seconds, "help_seconds");
+  request.is_exact = is_exact;
+  request.thread_count = thread_count_of(threads);
+  take_ways(start, ways, request);
   request.progress = [&](std::size_t states, std::size_t grown, std::size_t shrunk) {
     watch(states, grown, shrunk);
   };
+  const bool is_listening = !on_step.is_none();
+  Watch listener(std::move(on_step));
+  if (is_listening) {
+    request.stream = [&](const std::string& line) { listener.tell(line); };
+  }
+  const std::optional<std::size_t> done_count = done_count_of(at);
   const PlanFailuresWish wish = plan_failures_wish(asked, {.thread_count = request.thread_count});
-  auto found = std::make_shared<FoundOrder>(
-      FoundOrder{take(without_gil(watch, [&] { return seek_order(target.document, request); }))});
+  auto found = std::make_shared<FoundOrder>(FoundOrder{take(without_gil(watch, [&] {
+    return old ? continue_order(target.document, old->document, done_count, request)
+               : seek_order(target.document, request);
+  }))});
   if (found->result.order.outcome == plan::OrderOutcome::kFound && wish.is_wanted()) {
     const io::Document steps = order_document(*found);
     found->failures = take(without_gil(watch, [&] { return report_plan_failures(steps, wish); }));
@@ -327,36 +363,50 @@ py::object order_help(const FoundOrder& report) {
   out["reach"] = rule ? py::cast(std::string(plan::name(rule->reach))) : py::none();
   out["source"] =
       array_of(rule && rule->source ? std::vector{*rule->source} : std::vector<base::Cell>{});
+  out["pieces"] = report.help->in_pieces;
   return out;
 }
 
-std::shared_ptr<FoundMoves> move(const Structure& start, const Structure& target,
-                                 const std::string& motions, const py::handle& within,
-                                 bool ignores_mechanics, const py::handle& seed,
-                                 const py::handle& seconds, const py::handle& threads,
-                                 const py::dict& asked, py::object progress) {
+std::optional<plan::CellBox> box_of(const py::handle& given) {
+  if (given.is_none()) {
+    return std::nullopt;
+  }
+  const auto corners = cells_of(given, "within");
+  if (corners.size() != 2) {
+    throw Error("within: expected two cells, the corners of a box");
+  }
+  const auto [a, b] = std::pair(corners[0], corners[1]);
+  return plan::CellBox{.low = {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
+                       .high = {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}};
+}
+
+/// `end`: the target, or a plan that is gone on with.
+std::shared_ptr<FoundMoves> move(const Structure& start, const Structure& end, bool is_continued,
+                                 const py::handle& at, const std::string& motions,
+                                 const py::dict& ways, bool ignores_mechanics,
+                                 const py::handle& seed, const py::handle& seconds,
+                                 const py::handle& threads, const py::dict& asked,
+                                 py::object progress) {
   Watch watch(std::move(progress));
-  MoveRequest request{.ignores_mechanics = ignores_mechanics,
+  MoveRequest request{.within = box_of(ways["within"]),
+                      .ignores_mechanics = ignores_mechanics,
+                      .keep = boxes_of(ways["keep"], "keep"),
                       .seed = seed_of(seed),
                       .seconds_max = seconds_of(seconds, "seconds"),
                       .thread_count = thread_count_of(threads)};
+  if (!ways["avoid"].is_none()) {
+    request.avoid = cells_of(ways["avoid"], "avoid");
+  }
   if (!motions.empty()) {
     request.motions = take(find_motions(motions));
   }
-  if (!within.is_none()) {
-    const auto corners = cells_of(within, "within");
-    if (corners.size() != 2) {
-      throw Error("within: expected two cells, the corners of a box");
-    }
-    const auto [a, b] = std::pair(corners[0], corners[1]);
-    request.within =
-        plan::CellBox{.low = {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
-                      .high = {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}};
-  }
   request.progress = [&](std::size_t states, int distance) { watch(states, distance); };
+  const std::optional<std::size_t> done_count = done_count_of(at);
   const PlanFailuresWish wish = plan_failures_wish(asked, {.thread_count = request.thread_count});
-  auto found = std::make_shared<FoundMoves>(FoundMoves{take(
-      without_gil(watch, [&] { return seek_moves(start.document, target.document, request); }))});
+  auto found = std::make_shared<FoundMoves>(FoundMoves{take(without_gil(watch, [&] {
+    return is_continued ? continue_moves(start.document, end.document, done_count, request)
+                        : seek_moves(start.document, end.document, request);
+  }))});
   if (found->plan.outcome == plan::MoveOutcome::kFound) {
     found->failures = take(
         without_gil(watch, [&] { return report_plan_failures(io::move_steps(*found), wish); }));
@@ -496,6 +546,7 @@ void add_order(py::module_& module) {
                              [](const FoundOrder& r) { return r.result.margin_min_mm; })
       .def_property_readonly("seconds", [](const FoundOrder& r) { return r.seconds; })
       .def_property_readonly("help", &order_help)
+      .def_property_readonly("kept_count", [](const FoundOrder& r) { return r.kept_count; })
       .def("as_steps", &order_as_steps)
       .def("certificate", &order_certificate)
       .def("json", [](const FoundOrder& r) { return io::order_json(r, r.failures.member_list()); })
@@ -521,6 +572,8 @@ void add_move(py::module_& module) {
                              [](const FoundMoves& r) { return r.plan.assignment_bound; })
       .def_property_readonly("state_count", [](const FoundMoves& r) { return r.plan.state_count; })
       .def_property_readonly("seconds", [](const FoundMoves& r) { return r.seconds; })
+      .def_property_readonly("kept_count", [](const FoundMoves& r) { return r.kept_count; })
+      .def("lines", [](const FoundMoves& r) { return io::move_lines(r); })
       .def("as_steps", &move_as_steps)
       .def("json", [](const FoundMoves& r) { return io::move_json(r, r.failures.member_list()); })
       .def("csv", [](const FoundMoves& r) { return io::move_csv(r); })

@@ -153,6 +153,83 @@ def test_moves_have_the_motions_that_are_given(root, tmp_path):
         holdfast.move(*ends, pivots=True, motions=slides)
 
 
+def replayed(plan):
+    """The cells after the steps of a plan, which are safe."""
+    steps = json.loads(plan.json()).get('steps', [])
+    assert not steps or holdfast.steps(plan).verdict is Verdict.SAFE
+    cells = {tuple(cell) for cell in plan.cells.tolist()}
+    for step in steps:
+        cells |= {tuple(cell) for cell in step.get('attach', [])}
+        cells -= {tuple(cell) for cell in step.get('detach', [])}
+        for move in step.get('move', []):
+            cells.remove(tuple(move['from']))
+            cells.add(tuple(move['to']))
+    return cells
+
+
+def test_a_plan_is_gone_on_with(tmp_path):
+    tower = Robot([[0, 0, z] for z in range(5)] + [[1, 0, 0]])
+    told = []
+    first = holdfast.order(tower, on_step=told.append)
+    assert [step['attach'] for step in told[1:]] == [batch.tolist() for batch in first.batches]
+    assert told[0]['start'] == first.start.tolist() and told[-1]['margin_mm'] > 0
+    assert first.kept_count is None
+    rest = holdfast.order(tower, continue_=first.robot(), at=2)
+    assert rest.kept_count == len(rest.batches) == len(first.batches) - 2
+    assert replayed(rest.robot()) == {tuple(cell) for cell in tower.cells.tolist()}
+    path = tmp_path / 'plan.json'
+    first.robot().save(path)
+    now = Robot([*first.start.tolist(), *first.batches[0].tolist(), *first.batches[1].tolist()])
+    assert holdfast.order(now, continue_=path).kept_count == len(first.batches) - 2
+
+    row = Robot([[0, 0, 0], [1, 0, 0], [2, 0, 0]])
+    up = Robot([[0, 0, 0], [0, 0, 1], [0, 0, 2]])
+    told.clear()
+    moves = holdfast.move(row, up, on_step=told.append)
+    assert [(tuple(step['from']), tuple(step['to'])) for step in told] == [
+        (origin, to) for (origin, to, _), in moves.steps]
+    for at in range(len(moves.steps) + 1):
+        left = holdfast.move(row, continue_=moves.robot(), at=at)
+        assert left.steps == moves.steps[at:] and left.kept_count == len(left.steps)
+    with pytest.raises(holdfast.Error, match='of which 99 cannot be done'):
+        holdfast.move(row, continue_=moves.robot(), at=99)
+    with pytest.raises(holdfast.Error, match='at: '):
+        holdfast.order(tower, continue_=first.robot(), at=-1)
+    for wrong in ({'target': up, 'continue_': moves.robot()}, {}, {'target': up, 'at': 1}):
+        with pytest.raises(ValueError, match='continue_'):
+            holdfast.move(row, **wrong)
+    with pytest.raises(ValueError, match='start and continue_'):
+        holdfast.order(tower, start=[[0, 0, 0]], continue_=first.robot())
+
+
+def test_what_a_listener_raises_ends_the_search():
+    def refuse(step):
+        raise RuntimeError(f'no more after {sorted(step)}')
+    cube = Robot([[x, y, z] for x in range(3) for y in range(3) for z in range(3)])
+    with pytest.raises(RuntimeError, match='no more after'):
+        holdfast.order(cube, parallel='all', on_step=refuse)
+    with pytest.raises(RuntimeError, match='no more after'):
+        holdfast.move(Robot([[0, 0, 0], [1, 0, 0], [2, 0, 0]]),
+                      Robot([[0, 0, 0], [1, 0, 0], [1, 0, 1]]), on_step=refuse)
+
+
+def test_modules_are_kept_and_cells_avoided():
+    row = Robot([[0, 0, 0], [1, 0, 0], [2, 0, 0]])
+    bend = Robot([[0, 0, 0], [1, 0, 0], [1, 0, 1]])
+    assert len(holdfast.move(row, bend).steps) == 1
+    around = holdfast.move(row, bend, keep=[[0, 0, 0], [1, 0, 0]], avoid=[[2, 0, 1]])
+    assert {to for (_, to, _), in around.steps}.isdisjoint({(2, 0, 1)})
+    assert len(around.steps) == 2 and replayed(around.robot()) == replayed(bend)
+    with pytest.raises(holdfast.Error, match='to be kept, and the target has no such'):
+        holdfast.move(row, bend, keep=[[2, 0, 0]])
+    tower = Robot([[0, 0, z] for z in range(4)])
+    for reverse in (False, True):
+        found = holdfast.order(tower, keep=[[0, 0, 0], [0, 0, 1]], reverse=reverse)
+        assert found.start.tolist() == [[0, 0, 0], [0, 0, 1]] and len(found.batches) == 2
+    with pytest.raises(holdfast.Error, match='to be kept, but no module is there'):
+        holdfast.order(tower, keep=[[1, 0, 0]])
+
+
 def test_the_robot_finds_the_exact_verdict_itself(root):
     for name in ('arm_breaks_a', 'arm_breaks_b', 'crane_tips_b'):
         robot = holdfast.load(root / f'scenarios/{name}.json')

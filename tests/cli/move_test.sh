@@ -73,6 +73,66 @@ python3 -c 'import json; line, = open("out"); assert json.loads(line)["result"] 
 expect_exit 64 move "$from" "$to" --stream --json -
 expect_exit 64 move "$from" "$to" --stream --geometry-only
 
+# Modules that stay, as cells, in a box or in a file; cells that nobody enters or sweeps.
+shape bend.json '[0,0,0],[1,0,0],[1,0,1]'
+shape foot.json '[0,0,0],[1,0,0]'
+expect_exit 0 move row.json bend.json --keep foot.json --avoid 2,0,1 -o around.json
+expect_line out '^FOUND +2 steps'
+expect_exit 0 steps around.json
+! grep -q '"to": \[2,0,1\]' around.json || fault 'a module goes where none may'
+expect_exit 0 move row.json bend.json --keep 1,0,0:0,9,0
+expect_line out '^FOUND +1 step,'
+barred='--keep 0,0,0 --keep 1,0,0 --avoid 2,0,1 --within 0,0,0:3,0,3'
+# shellcheck disable=SC2086
+expect_exit 1 move row.json bend.json $barred --json barred.json
+# shellcheck disable=SC2086
+expect_exit 0 move row.json bend.json $barred --verify barred.json
+expect_line out 'within .* to \(3,0,3\), 2 modules kept, 1 cell avoided$'
+expect_refusal 65 'of start and target the wrong one' row.json bend.json --verify barred.json
+expect_refusal 65 '.2,0,0. is to be kept, and the target' row.json bend.json --keep 2,0,0
+expect_refusal 65 'the cell .1,0,1. is to be kept, but no module' row.json bend.json --keep 1,0,1
+expect_refusal 65 'the box from .* is to be kept, but no' row.json bend.json --keep 5,5,5:6,6,6
+expect_refusal 65 '^holdfast: no.json: no such file' row.json bend.json --keep no.json
+expect_refusal 65 '.1,0,1. is to be avoided, but the target' row.json bend.json --avoid 0,0,1:2,0,1
+expect_refusal 65 '.2,0,0. is to be avoided, but the robot' row.json bend.json --avoid 2,0,0
+expect_exit 64 move row.json bend.json --keep 0:0
+expect_exit 64 move - bend.json --keep - <foot.json
+expect_exit 64 move row.json bend.json --avoid foot.json
+expect_exit 64 move row.json bend.json --avoid 0,0,0:999,999,1
+expect_exit 64 move row.json bend.json --keep foot.json -o foot.json
+
+# A plan that is gone on with, after some of its steps, from elsewhere, and under other rules.
+expect_exit 0 move "$from" --continue safe.json --at 3 "$plane" -o rest.json --json rest_report.json
+expect_line out '^  kept +the last 6 steps of the plan, after 0 new$'
+expect_line rest_report.json '"kept": 6'
+expect_exit 0 steps rest.json
+python3 - <<'PYTHON' || fault 'other steps are left'
+import json
+plan, rest = (json.load(open(name)) for name in ('safe.json', 'rest.json'))
+assert rest['steps'] == plan['steps'][3:]
+modules = plan['modules'] = [module if isinstance(module, dict) else {'cell': module}
+                             for module in plan['modules']]
+for step in plan.pop('steps')[:4]:
+    move, = step['move']
+    moved, = (module for module in modules if module['cell'] == move['from'])
+    moved['cell'] = move['to']
+for name, cell in (('there', move['to']), ('back', move['from'])):
+    moved['cell'] = cell
+    json.dump(plan, open(f'{name}.json', 'w'))
+PYTHON
+expect_exit 0 move there.json --continue safe.json "$plane"
+expect_line out '^  kept +the last 5 steps of the plan, after 0 new$'
+expect_exit 0 move back.json --continue safe.json "$plane" --stream -o rest.json
+[ "$(wc -l <out)" -eq 7 ] || fault 'not as many lines as steps, and the result'
+expect_exit 0 steps rest.json
+expect_refusal 65 'safe.json: it has 9 steps, of which' "$from" --continue safe.json --at 10
+expect_refusal 65 'safe.json: it is a plan of another robot' row.json --continue safe.json
+expect_refusal 65 'row.json: it has no steps' next.json --continue row.json
+expect_exit 64 move "$from" "$to" --continue safe.json
+expect_exit 64 move "$from" --continue safe.json --geometry-only
+expect_exit 64 move "$from" "$to" --at 2
+expect_exit 64 move "$from" --continue safe.json -o safe.json
+
 # Nothing to do: the file is FROM, without steps.
 expect_exit 0 move row.json row.json -o same.json
 expect_exit 0 check same.json

@@ -73,7 +73,6 @@ for signal in INT TERM; do
   expect_part left.json 640 below
 done
 
-[ "$faults" -eq 0 ] || exit 1
 # Several at a time: the steps are marked, and the program judges every part of each.
 "$program" generate ball 5 -o ball.json
 expect_exit 0 order ball.json --parallel 4 -o several.json --json several_report.json
@@ -158,6 +157,29 @@ expect_exit 0 order ball.json --reverse -o apart.json
 expect_exit 0 order ball.json --continue apart.json --at 7 -o left.json
 expect_exit 0 steps left.json
 
+# Modules that no step touches: there at first, and left in the end.
+structure pair.json '"modules": [[0,0,0], [0,0,1]]'
+expect_exit 0 order tower.json --keep pair.json --json kept_report.json
+expect_line kept_report.json '"start": \[\[0,0,0\], ?\[0,0,1\]\]'
+expect_exit 0 order tower.json --reverse --keep 0,0,0:0,0,1 -o down.json
+expect_exit 0 steps down.json
+! grep -q '"detach": \[\[0,0,[01]\]\]' down.json || fault 'a kept module is detached'
+expect_exit 65 order tower.json --keep 0,0,3
+expect_line err 'tower.json: the cell .0,0,3. is to be kept, but no module is there'
+structure foot.json '"modules": [[0,0,0]]'
+expect_exit 65 order tower.json --from foot.json --keep 0,0,1
+expect_line err 'foot.json: the module .0,0,1. is to be kept, and is not in the start'
+expect_exit 65 order tower.json --keep 0,0,2
+expect_line err 'the start is what is fixed and what is to be kept: give one that holds it'
+expect_exit 65 order now.json --continue plan.json --keep 50,0,0
+expect_exit 0 order ball.json --continue apart.json --at 7 --keep 0,0,0:1,0,0 -o left.json
+expect_exit 0 steps left.json
+python3 - <<'PYTHON' || fault 'a kept module is taken away'
+import json
+gone = [cell for step in json.load(open('left.json'))['steps'] for cell in step['detach']]
+assert gone and not any(cell in gone for cell in ([0, 0, 0], [1, 0, 0])), gone
+PYTHON
+
 # In pieces: an arch that holds from both feet only.
 cat >small_arch.json <<'JSON'
 {"format": "holdfast-structure", "version": 2, "name": "small arch", "support_z": 0,
@@ -168,6 +190,10 @@ JSON
 expect_exit 0 check small_arch.json
 expect_exit 1 order small_arch.json --help-seconds 0 --certificate none.json
 expect_line out 'NONE        there is no safe order that keeps the robot in one piece'
+! grep -q -- '--pieces' out || fault 'what nobody has sought is recommended'
+expect_exit 1 order small_arch.json --json apart_report.json
+expect_line out '^  help        in several pieces there is an order: seek it with --pieces$'
+expect_line apart_report.json '"pieces": true'
 expect_exit 0 order small_arch.json --pieces -o from_both.json --json from_both_report.json
 grep -q '"apart": true' from_both.json || fault 'no step is marked'
 expect_exit 0 steps from_both.json
@@ -184,4 +210,5 @@ expect_exit 64 order small_arch.json --pieces --group 2
 expect_exit 64 order small_arch.json --pieces --parallel 2
 expect_exit 64 order small_arch.json --pieces --continue from_both.json
 
+[ "$faults" -eq 0 ] || exit 1
 echo "order: all as expected"

@@ -106,6 +106,7 @@ _holdfast() {
         --reach) words="free line surface" ;;
         --source) : ;;
         --avoid) : ;;
+        --keep) : ;;
         --group) : ;;
         --parallel) words="all" ;;
         --seed) : ;;
@@ -130,13 +131,17 @@ _holdfast() {
         --support-z) : ;;
         --pitch) : ;;
         --safety-factor|--margin) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --from --continue --at --reach --source --avoid --group --parallel --pieces --reverse --seed --exact --seconds --help-seconds --threads -q --quiet -o --output --json --csv --html --certificate --strength-needed --stream --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --from --continue --at --reach --source --avoid --keep --group --parallel --pieces --reverse --seed --exact --seconds --help-seconds --threads -q --quiet -o --output --json --csv --html --certificate --strength-needed --stream --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin"; else files=1; fi ;;
       esac
       ;;
     move)
       case $previous in
+        --continue) : ;;
+        --at) : ;;
         --motions) : ;;
         --within) : ;;
+        --avoid) : ;;
+        --keep) : ;;
         --seed) : ;;
         --seconds) : ;;
         --threads) : ;;
@@ -158,7 +163,7 @@ _holdfast() {
         --support-z) : ;;
         --pitch) : ;;
         --safety-factor|--margin) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --pivot --motions --within --geometry-only --seed --seconds --threads -q --quiet -o --output --json --csv --html --verify --stream --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --continue --at --pivot --motions --within --avoid --keep --geometry-only --seed --seconds --threads -q --quiet -o --output --json --csv --html --verify --stream --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin"; else files=1; fi ;;
       esac
       ;;
     simulate)

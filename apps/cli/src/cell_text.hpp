@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "holdfast/holdfast.hpp"
+#include "holdfast/move.hpp"
 
 /// Cells as arguments of the program: "X,Y,Z", or "(X,Y,Z)" as reports write them, also with blanks
 /// before the numbers. What is taken is removed from the front of the text.
@@ -27,5 +28,11 @@ bool take_cell(std::string_view& text, base::Cell& cell);
 
 /// The cell that a text is; none if it is no cell or has anything behind it.
 std::optional<base::Cell> read_cell(std::string_view text);
+
+/// The box "X,Y,Z:X,Y,Z", by two of its corners, that a text is; none if it is anything else.
+std::optional<plan::CellBox> read_box(std::string_view text);
+
+/// The box, or the box of the one cell "X,Y,Z".
+std::optional<plan::CellBox> read_cell_or_box(std::string_view text);
 
 }  // namespace holdfast::cli

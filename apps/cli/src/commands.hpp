@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <functional>
 #include <initializer_list>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -88,6 +89,18 @@ inline CLI::Option& add_output(CLI::App& command, const std::string& name, std::
 /// The option for motions as data, of find_motions().
 inline CLI::Option& add_motions(CLI::App& command, std::string& motions, const std::string& help) {
   return *command.add_option("--motions", motions, help)->type_name("NAME|FILE");
+}
+
+/// The options --continue and --at; returns the first one.
+inline CLI::Option& add_continuation(CLI::App& command, std::string& plan,
+                                     std::optional<std::size_t>& done_count,
+                                     const std::string& plan_help, const std::string& count_help) {
+  CLI::Option* option = command.add_option("--continue", plan, plan_help)->type_name("PLAN");
+  command.add_option("--at", done_count, count_help)
+      ->type_name("K")
+      ->check(CLI::Range(0, 1000000000))
+      ->needs(option);
+  return *option;
 }
 
 /// The option --threads.

@@ -11,6 +11,7 @@
 #include "file_clash.hpp"
 #include "holdfast/move.hpp"
 #include "interruption.hpp"
+#include "plan_cells.hpp"
 #include "plan_failure_options.hpp"
 #include "progress.hpp"
 #include "reading.hpp"
@@ -23,10 +24,13 @@ struct MoveArguments {
   Reading reading;
   std::string start;
   std::string target;
+  std::string plan;                            ///< That is gone on with,
+  std::optional<std::size_t> done_count = {};  ///< so many steps of which are done.
   bool pivots = false;
   std::string motions;
   bool ignores_mechanics = false;
   std::string within;
+  PlanCells cells;
   std::uint64_t seed = 0;
   double seconds = 300;
   int thread_count = 0;
@@ -47,17 +51,6 @@ struct MoveArguments {
             {"--stream", is_streamed ? "-" : ""}};
   }
 };
-
-/// The box that "X,Y,Z:X,Y,Z" says, by its two corners in any order; none if it is no box.
-std::optional<plan::CellBox> box_of(std::string_view text) {
-  base::Cell a;
-  base::Cell b;
-  if (!take_cell(text, a) || !take_mark(text, ':') || !take_cell(text, b) || !text.empty()) {
-    return std::nullopt;
-  }
-  return plan::CellBox{.low = {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
-                       .high = {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}};
-}
 
 int outcome_code(plan::MoveOutcome outcome) {
   switch (outcome) {
@@ -101,9 +94,11 @@ int show(const MoveArguments& options, const io::MoveReport& report,
   return worse(outcome_code(report.plan.outcome), failures);
 }
 
-/// The file that the target is in: a goal shape is in that of the robot.
-const std::string& target_file(const MoveArguments& options) {
-  return options.target.empty() ? options.start : options.target;
+/// The file that the target is in: that of a plan, or of the robot, which may have a goal shape.
+const std::string& end_file(const MoveArguments& options) {
+  return !options.plan.empty()    ? options.plan
+         : options.target.empty() ? options.start
+                                  : options.target;
 }
 
 int verify(const MoveArguments& options, const MoveRequest& request, const io::Document& start,
@@ -112,7 +107,7 @@ int verify(const MoveArguments& options, const MoveRequest& request, const io::D
   if (!text) {
     return fail(text.error(), options.verified);
   }
-  const auto check = verify_moves(named(start, options.start), named(target, target_file(options)),
+  const auto check = verify_moves(named(start, options.start), named(target, end_file(options)),
                                   request, text.value());
   if (!check) {
     return fail(check.error(), options.verified);
@@ -150,8 +145,9 @@ base::Result<MoveRequest> request_of(const MoveArguments& options, Progress& pro
     request.motions = std::move(motions).value();
   }
   if (!options.within.empty()) {
-    request.within = box_of(options.within);
+    request.within = read_box(options.within);
   }
+  request.avoid = avoided_cells(options.cells);
   request.progress = [&progress](std::size_t states, int distance) {
     progress.show([&] {
       return fmt::format("{} examined, the nearest shape is {} or more moves away",
@@ -161,41 +157,72 @@ base::Result<MoveRequest> request_of(const MoveArguments& options, Progress& pro
   return request;
 }
 
-int run(const MoveArguments& options) {
+/// Refuses files that are given twice.
+void refuse_double_files(const MoveArguments& options) {
   std::vector<std::string> inputs = {options.start};
-  for (const std::string& more : {options.target, options.verified, options.motions}) {
+  for (const std::string& more :
+       {options.target, options.plan, options.verified, options.motions}) {
     if (!more.empty()) {
       inputs.push_back(more);
     }
   }
+  const auto files = options.cells.files();
+  inputs.insert(inputs.end(), files.begin(), files.end());
   refuse_clashes(inputs, options.outputs());
+}
+
+/// The shape that the robot is to get to, or the plan that is gone on with.
+base::Result<io::Document> read_end(const MoveArguments& options, const io::Document& start) {
+  if (!options.plan.empty()) {
+    auto plan = read_with_notes(options.plan, options.reading);
+    return plan ? std::move(plan).value().document : base::Result<io::Document>(plan.error());
+  }
+  return options.target.empty() ? io::goal_of(start)
+                                : read(options.target, "the target", options.reading);
+}
+
+/// Says what is wrong, and with which of the files.
+int fail_in_file(const MoveArguments& options, base::Error error) {
+  const bool is_plan = error.where == kAtPlan;
+  error.where = is_plan ? "" : error.where;
+  return fail(error, is_plan
+                         ? options.plan
+                         : options.start + (options.target.empty() ? "" : " " + options.target));
+}
+
+int run(const MoveArguments& options) {
+  refuse_double_files(options);
   const auto start = read(options.start, "the robot", options.reading);
   if (!start) {
     return fail(start.error(), options.start);
   }
-  const auto target = options.target.empty() ? io::goal_of(start.value())
-                                             : read(options.target, "the target", options.reading);
-  if (!target) {
-    return fail(target.error(), target_file(options));
+  const auto end = read_end(options, start.value());
+  if (!end) {
+    return fail(end.error(), end_file(options));
   }
   Progress progress(options.is_quiet);
-  const auto asked = request_of(options, progress);
+  auto asked = request_of(options, progress);
   if (!asked) {
     return fail(asked.error(), options.motions);
   }
-  const MoveRequest& request = asked.value();
+  MoveRequest request = std::move(asked).value();
+  if (!take_kept(options.cells, options.reading,
+                 io::standing_spec(start.value(), "the robot").value(), request.keep)) {
+    return kExitBadInput;
+  }
   if (!options.verified.empty()) {
-    return verify(options, request, start.value(), target.value());
+    return verify(options, request, start.value(), end.value());
   }
   const Interruption interruption;
-  auto sought = seek_moves(start.value(), target.value(), request);
+  auto sought = options.plan.empty()
+                    ? seek_moves(start.value(), end.value(), request)
+                    : continue_moves(start.value(), end.value(), options.done_count, request);
   if (!sought) {
-    return fail(sought.error(),
-                options.start + (options.target.empty() ? "" : " " + options.target));
+    return fail_in_file(options, sought.error());
   }
   io::MoveReport report = std::move(sought).value();
   report.origin = options.reading.origin(options.start);
-  report.origin.target = target_file(options);
+  report.origin.target = end_file(options);
   if (options.is_streamed) {
     fmt::print("{}", io::move_lines(report));
     std::fflush(stdout);
@@ -219,8 +246,11 @@ void add_ways(CLI::App& command, MoveArguments& options) {
                   "No module leaves the box of cells with these corners")
       ->type_name("X,Y,Z:X,Y,Z")
       ->check([](const std::string& text) {
-        return box_of(text) ? "" : "expected two cells, such as 0,0,0:9,9,9";
+        return read_box(text) ? "" : "expected two cells, such as 0,0,0:9,9,9";
       });
+  add_plan_cells(command, options.cells,
+                 "A cell, or a box of cells, that no module enters or sweeps and that carries "
+                 "nothing; may be given several times");
   command.add_flag("--geometry-only", options.ignores_mechanics,
                    "Find moves that need not be safe, and judge their stages afterwards, as far "
                    "as time reaches");
@@ -248,6 +278,13 @@ Command add_move(CLI::App& app) {
                    "The same modules in the shape that is wanted; without it, the goal shape of "
                    "FROM, a VisibleSim target that overlaps the robot")
       ->type_name("");
+  CLI::Option& plan = add_continuation(
+      *command, options->plan, options->done_count,
+      "Go on with a plan of -o to the shape that it leads to, keeping its last steps as far as "
+      "they "
+      "are safe: FROM is the robot as it is now",
+      "The number of steps of the plan that are done; FROM then is the robot that it was made for");
+  plan.excludes("TO");
   add_ways(*command, *options);
   add_limits(*command, *options);
   add_output(*command, "-o,--output", options->steps,
@@ -264,6 +301,7 @@ Command add_move(CLI::App& app) {
                    "and ways to go")
       ->type_name("FILE");
   add_stream(*command, options->is_streamed)->excludes("--geometry-only")->excludes("--verify");
+  plan.excludes("--geometry-only")->excludes("--verify");
   add_plan_failure_options(*command, options->failures);
   add_reading(*command, options->reading);
   add_safety_factor(*command, options->reading);
@@ -272,6 +310,8 @@ Command add_move(CLI::App& app) {
           {.examples = {{"move line.json bridge.json", "how does the robot get there?"},
                         {"move line.json bridge.json -o plan.json",
                          "keep the moves, for holdfast steps and view"},
+                        {"move now.json --continue plan.json -o rest.json",
+                         "go on from the robot as it is, after a fault"},
                         {"move a.json b.json --pivot", "cubes turn about their edges"},
                         {"move robot.xml", "to the goal shape that the file has itself"}},
            .notes = "A module slides along its neighbours or turns around a corner, while all "

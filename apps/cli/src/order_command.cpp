@@ -14,6 +14,7 @@
 #include "holdfast/move.hpp"
 #include "holdfast/order.hpp"
 #include "interruption.hpp"
+#include "plan_cells.hpp"
 #include "plan_failure_options.hpp"
 #include "progress.hpp"
 #include "reading.hpp"
@@ -29,7 +30,7 @@ struct OrderArguments {
   std::optional<std::size_t> done_count = {};  ///< so many steps of which are done.
   std::string reach = "free";
   std::string source;
-  std::vector<std::string> avoid;
+  PlanCells cells;
   std::size_t group_size = 1;
   bool in_pieces = false;
   std::string parallel = "1";
@@ -60,38 +61,6 @@ struct OrderArguments {
   }
 };
 
-/// A box of more cells than this is taken for a mistake.
-constexpr std::int64_t kAvoidedMax = 1'000'000;
-
-/// The cells of "X,Y,Z", or of the box "X,Y,Z:X,Y,Z"; none if the text is neither.
-std::optional<std::vector<base::Cell>> cells_of_text(std::string_view text) {
-  base::Cell low;
-  base::Cell high;
-  if (!take_cell(text, low)) {
-    return std::nullopt;
-  }
-  high = low;
-  if (!text.empty() && (!take_mark(text, ':') || !take_cell(text, high) || !text.empty())) {
-    return std::nullopt;
-  }
-  const auto width = [](std::int32_t from, std::int32_t to) {
-    return std::max<std::int64_t>(0, std::int64_t{to} - from + 1);
-  };
-  const std::int64_t area = width(low.x, high.x) * width(low.y, high.y);
-  if (area > kAvoidedMax || area * width(low.z, high.z) > kAvoidedMax) {
-    return std::nullopt;
-  }
-  std::vector<base::Cell> cells;
-  for (base::Cell cell = low; cell.z <= high.z; ++cell.z) {
-    for (cell.y = low.y; cell.y <= high.y; ++cell.y) {
-      for (cell.x = low.x; cell.x <= high.x; ++cell.x) {
-        cells.push_back(cell);
-      }
-    }
-  }
-  return cells.empty() ? std::nullopt : std::optional(std::move(cells));
-}
-
 /// How many modules come at a time: a number, or "all".
 std::optional<std::size_t> parallel_of_text(const std::string& text) {
   if (text == "all") {
@@ -101,38 +70,6 @@ std::optional<std::size_t> parallel_of_text(const std::string& text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
   const bool is_number = error == std::errc() && end == text.data() + text.size();
   return is_number && count > 0 ? std::optional(count) : std::nullopt;
-}
-
-/// All cells of a document that is to be the start.
-base::Result<std::vector<base::Cell>> start_cells(const OrderArguments& options,
-                                                  const model::RobotSpec& target) {
-  const auto read = read_with_notes(options.start, options.reading);
-  if (!read) {
-    return read.error();
-  }
-  if (io::step_count(read.value().document) > 0) {
-    return base::Error{base::ErrorCode::kBadInput,
-                       "it has planned modules or steps; expected a robot as it stands",
-                       {}};
-  }
-  const auto start = io::make_spec(read.value().document);
-  if (!start) {
-    return start.error();
-  }
-  if (start.value().lattice != target.lattice) {
-    return base::Error{base::ErrorCode::kBadInput, "its lattice is not that of the target", {}};
-  }
-  if (const auto other = plan::differences(start.value(), target); !other.empty()) {
-    print_notes({{fmt::format("only its cells are taken, all else is the target's, which differs "
-                              "in {}",
-                              fmt::join(other, ", "))}},
-                options.start);
-  }
-  std::vector<base::Cell> cells;
-  for (const io::ModuleEntry& module : read.value().document.modules) {
-    cells.push_back(module.cell);
-  }
-  return cells;
 }
 
 /// Goes on with a plan. An error of it has no further place, and is printed with its name.
@@ -164,10 +101,7 @@ OrderRequest request_of(const OrderArguments& options, std::size_t all, Progress
   if (!options.source.empty()) {
     request.rule.source = read_cell(options.source);
   }
-  for (const std::string& text : options.avoid) {
-    const auto cells = cells_of_text(text).value();  // It was checked when it was read.
-    request.rule.avoid.insert(request.rule.avoid.end(), cells.begin(), cells.end());
-  }
+  request.rule.avoid = avoided_cells(options.cells);
   request.progress = [&progress, all](std::size_t states, std::size_t here, std::size_t furthest) {
     progress.show([&] {
       return fmt::format("{} examined, now at {} of {}, furthest {}",
@@ -264,6 +198,29 @@ int fail_in_file(const OrderArguments& options, base::Error error) {
                                                           : options.target);
 }
 
+/// Takes the modules that are there at first and those that are kept; the exit code if they cannot
+/// be taken, which it says.
+std::optional<int> take_modules(const OrderArguments& options, const io::Document& document,
+                                OrderRequest& request) {
+  if (options.start.empty() && options.cells.keep.empty()) {
+    return std::nullopt;
+  }
+  const auto target = io::make_spec(document);
+  if (!target) {
+    return fail(target.error(), options.target);
+  }
+  if (!options.start.empty()) {
+    auto cells = cells_of_file(options.start, options.reading, target.value());
+    if (!cells) {
+      return fail(cells.error(), options.start);
+    }
+    request.start = std::move(cells).value();
+  }
+  return take_kept(options.cells, options.reading, target.value(), request.keep)
+             ? std::optional<int>()
+             : kExitBadInput;
+}
+
 int run(const OrderArguments& options) {
   std::vector<std::string> inputs = {options.target};
   for (const std::string& more : {options.start, options.plan}) {
@@ -271,12 +228,14 @@ int run(const OrderArguments& options) {
       inputs.push_back(more);
     }
   }
+  const auto files = options.cells.files();
+  inputs.insert(inputs.end(), files.begin(), files.end());
   refuse_clashes(inputs, options.outputs());
   if ((options.reach == "surface") != !options.source.empty()) {
     throw UsageError(options.source.empty() ? "--reach surface requires --source CELL"
                                             : "--source requires --reach surface");
   }
-  if (options.reach == "free" && !options.avoid.empty()) {
+  if (options.reach == "free" && !options.cells.avoid.empty()) {
     throw UsageError("--avoid requires --reach line or surface: free modules have no ways to bar");
   }
   const auto read = read_with_notes(options.target, options.reading);
@@ -287,16 +246,8 @@ int run(const OrderArguments& options) {
   const io::Document& given = read.value().document;
   const std::size_t planned = given.steps.empty() ? 0 : given.steps.front().size();
   OrderRequest request = request_of(options, given.modules.size() + planned, progress);
-  if (!options.start.empty()) {
-    const auto target = io::make_spec(read.value().document);
-    if (!target) {
-      return fail(target.error(), options.target);
-    }
-    auto cells = start_cells(options, target.value());
-    if (!cells) {
-      return fail(cells.error(), options.start);
-    }
-    request.start = std::move(cells).value();
+  if (const auto code = take_modules(options, given, request)) {
+    return *code;
   }
   More more;
   auto sought = [&]() -> base::Result<io::OrderReport> {
@@ -349,18 +300,9 @@ void add_ways(CLI::App& command, OrderArguments& options) {
       ->check([](const std::string& text) {
         return read_cell(text) ? "" : "expected a cell, such as 3,0,0";
       });
-  command
-      .add_option(
-          "--avoid", options.avoid,
-          "A cell, or a box of cells, that bars ways of --reach line and surface and carries "
-          "nothing; may be given several times")
-      ->type_name("X,Y,Z[:X,Y,Z]")
-      ->allow_extra_args(false)
-      ->check([](const std::string& text) {
-        return cells_of_text(text) ? ""
-                                   : "expected a cell, such as 3,0,0, or a box with its low corner "
-                                     "first, such as 0,0,1:4,4,1, of at most a million cells";
-      });
+  add_plan_cells(command, options.cells,
+                 "A cell, or a box of cells, that bars ways of --reach line and surface and "
+                 "carries nothing; may be given several times");
   command
       .add_option("--group", options.group_size,
                   "Attach up to K modules that arrive at the same instant: states in between are "
@@ -387,23 +329,6 @@ void add_ways(CLI::App& command, OrderArguments& options) {
       ->excludes("--continue");
   command.add_flag("--reverse", options.is_reversed,
                    "Take the robot apart, from the target to the start");
-}
-
-void add_continuation(CLI::App& command, OrderArguments& options) {
-  CLI::Option* plan =
-      command
-          .add_option("--continue", options.plan,
-                      "Go on with a plan of -o, keeping its last steps as far as they are safe: "
-                      "TARGET is the robot as it is now")
-          ->type_name("PLAN")
-          ->excludes("--from");
-  command
-      .add_option("--at", options.done_count,
-                  "The number of steps of the plan that are done; TARGET then is the robot that it "
-                  "was made for")
-      ->type_name("K")
-      ->check(CLI::Range(0, 1000000000))
-      ->needs(plan);
 }
 
 void add_limits(CLI::App& command, OrderArguments& options) {
@@ -443,7 +368,13 @@ Command add_order(CLI::App& app) {
           "Structure to begin with, a part of TARGET; else the fixed modules, or one module "
           "that the search chooses")
       ->type_name("START");
-  add_continuation(*command, *options);
+  add_continuation(
+      *command, options->plan, options->done_count,
+      "Go on with a plan of -o, keeping its last steps as far as they are safe: "
+      "TARGET is the robot as it is now",
+      "The number of steps of the plan that are done; TARGET then is the robot that it "
+      "was made for")
+      .excludes("--from");
   add_ways(*command, *options);
   add_limits(*command, *options);
   add_output(

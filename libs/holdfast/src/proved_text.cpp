@@ -16,6 +16,10 @@ std::string robot_line(const char* label, const std::string& name, const model::
                                spec.planned.size()));
 }
 
+std::string avoid_words(const std::vector<base::Cell>& avoid) {
+  return avoid.empty() ? "" : fmt::format(", {} avoided", host::counted(avoid.size(), "cell"));
+}
+
 std::string step_words_of(const plan::OrderTask& task) {
   std::string steps = fmt::format("{} at a time", host::counted(task.group_size, "module"));
   if (task.group_size > 1) {
@@ -29,10 +33,7 @@ std::string step_words_of(const plan::OrderTask& task) {
   if (task.in_pieces) {
     steps += ", in one piece or in several";
   }
-  if (!task.rule.avoid.empty()) {
-    steps += fmt::format(", {} avoided", host::counted(task.rule.avoid.size(), "cell"));
-  }
-  return steps;
+  return steps + avoid_words(task.rule.avoid);
 }
 
 std::string step_words_of(const plan::MoveTask& task) {
@@ -43,7 +44,10 @@ std::string step_words_of(const plan::MoveTask& task) {
     steps += fmt::format(", within {} to {}", model::text(task.within->low),
                          model::text(task.within->high));
   }
-  return steps + (task.ignores_mechanics ? ", safe or not" : "");
+  if (!task.keep.empty()) {
+    steps += fmt::format(", {} kept", host::counted(task.keep.size(), "module"));
+  }
+  return steps + avoid_words(task.avoid) + (task.ignores_mechanics ? ", safe or not" : "");
 }
 
 std::string what_is_proved(const ProvedMoves& proved) {

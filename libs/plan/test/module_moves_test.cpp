@@ -108,6 +108,44 @@ TEST(ModuleMoves, leave_out_what_a_rule_bars) {
   }
 }
 
+/// Cells to be avoided bar ways as obstacles do, which every lattice's body has to keep clear of.
+TEST(ModuleMoves, avoid_cells_as_if_they_were_obstacles) {
+  std::size_t barred_count = 0;
+  for (std::uint64_t seed = 0; seed < holdfast::test::campaign(48U); ++seed) {
+    model::RobotSpec spec = robot_of(holdfast::test::kLattices[seed % 4], seed);
+    const RobotState robot(spec);
+    base::Rng rng(seed);
+    std::set<Cell> avoided;
+    for (const Cell& module : spec.existing) {
+      for (const base::Direction direction : base::directions(spec.lattice)) {
+        const Cell cell = base::neighbour(spec.lattice, module, direction);
+        if (robot.find(cell) == RobotState::kNone && rng.below(4) == 0) {
+          avoided.insert(cell);
+        }
+      }
+    }
+    for (const auto& motions : {std::shared_ptr<const Motions>(), pivoting_cubes()}) {
+      if (motions && motions->lattice != spec.lattice) {
+        continue;
+      }
+      MoveRule rule{.motions = motions, .avoid = model::CellIndex(avoided.size())};
+      for (const Cell& cell : avoided) {
+        rule.avoid.insert(cell, 0);
+      }
+      model::RobotSpec walled = spec;
+      walled.obstacles.push_back({.from = {}, .to = {}, .cells = {avoided.begin(), avoided.end()}});
+      const RobotState behind(walled);
+      for (const std::int32_t module : loose_modules(robot)) {
+        const auto found = ends_of(moves_of(robot, module, rule));
+        EXPECT_EQ(found, ends_of(moves_of(behind, module, {.motions = motions}))) << seed;
+        barred_count +=
+            ends_of(moves_of(robot, module, {.motions = motions})).size() - found.size();
+      }
+    }
+  }
+  EXPECT_GE(barred_count, holdfast::test::least(100U));
+}
+
 /// Whether all modules but one are connected.
 bool holds_together_without(const RobotState& robot, std::size_t left_out) {
   std::set<Cell> rest;

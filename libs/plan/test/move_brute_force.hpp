@@ -29,6 +29,8 @@ struct World {
   Cells fixed;
   Cell low;
   Cell high;
+  Cells kept = {};     ///< Modules that do not move.
+  Cells avoided = {};  ///< Cells that nobody enters or sweeps.
 };
 
 inline Cell plus(const Cell& a, const Cell& b, int factor = 1) {
@@ -154,9 +156,9 @@ inline bool is_move_safe(const World& world, const Cells& before, const Cell& fr
 /// Every end of a safe move of one module.
 inline std::vector<Cell> ends(const World& world, const Cells& before, const Cell& from) {
   const auto is_free = [&](const Cell& cell) {
-    return !before.contains(cell) && world.low.x <= cell.x && cell.x <= world.high.x &&
-           world.low.y <= cell.y && cell.y <= world.high.y && world.low.z <= cell.z &&
-           cell.z <= world.high.z;
+    return !before.contains(cell) && !world.avoided.contains(cell) && world.low.x <= cell.x &&
+           cell.x <= world.high.x && world.low.y <= cell.y && cell.y <= world.high.y &&
+           world.low.z <= cell.z && cell.z <= world.high.z;
   };
   std::vector<Cell> found;
   const auto try_way = [&](const Cell& to, const std::vector<Waypoint>& way) {
@@ -212,7 +214,7 @@ inline std::optional<int> shortest(const World& world, const Cells& start, const
       return length[cells];
     }
     for (const Cell& from : cells) {
-      if (world.fixed.contains(from)) {
+      if (world.fixed.contains(from) || world.kept.contains(from)) {
         continue;
       }
       for (const Cell& to : ends(world, cells, from)) {

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "holdfast/base/lattice.hpp"
@@ -66,6 +67,32 @@ std::vector<Cell> random_modules(base::Rng& rng) {
     }
   }
   return {cells.begin(), cells.end()};
+}
+
+/// An arch that holds, and whose beam breaks if all of it hangs on one leg.
+TEST(OrderHelp, is_to_grow_in_pieces_where_that_suffices) {
+  OrderTask task{.target = {.existing = {{0, 0, 0},
+                                         {0, 0, 1},
+                                         {0, 0, 2},
+                                         {1, 0, 2},
+                                         {2, 0, 2},
+                                         {3, 0, 2},
+                                         {4, 0, 2},
+                                         {4, 0, 1},
+                                         {4, 0, 0}}}};
+  for (const auto& [strength_n, is_found] : {std::pair(0.3, false), std::pair(0.8, true)}) {
+    task.target.material.strength_lateral_n = strength_n;
+    task.in_pieces = true;
+    ASSERT_EQ(outcome_of(task) == OrderOutcome::kFound, is_found);
+    task.in_pieces = false;
+    ASSERT_EQ(outcome_of(task), OrderOutcome::kNone);
+    const auto help = find_help(task);
+    EXPECT_EQ(help && help->in_pieces, is_found);
+  }
+  // Who asks for modules at the same instant cannot have pieces.
+  task.group_size = 2;
+  const auto help = find_help(task, {.seconds_max = 1});
+  EXPECT_FALSE(help && help->in_pieces);
 }
 
 TEST(OrderHelp, names_another_source_where_modules_come_from_a_cell_of_the_target) {

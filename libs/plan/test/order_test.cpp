@@ -328,6 +328,67 @@ TEST(RobotOrder, is_found_just_where_a_walk_through_all_parts_finds_one) {
   EXPECT_GE(only_in_pieces_count, holdfast::test::least(20, 20));
 }
 
+/// Kept modules are there before any step, and none of theirs attaches one; a walk that begins with
+/// just them says whether there is an order.
+TEST(RobotOrder, that_keeps_modules_is_found_just_where_a_walk_from_them_finds_one) {
+  int found_count = 0;
+  int none_count = 0;
+  for (std::uint64_t seed = 0; seed < holdfast::test::campaign(1500U, 20U); ++seed) {
+    base::Rng rng(seed);
+    OrderTask task{.target = seed % 5 == 0 ? random_arch(seed) : random_target(seed)};
+    task.in_pieces = seed % 5 == 0;
+    task.group_size = 1 + seed % 5 / 4;
+    std::vector<CellBox> keep;
+    std::set<Cell> kept;
+    for (const Cell& cell : task.target.existing) {
+      if (rng.below(4) == 0 || cell.z + cell.x + cell.y == 0) {
+        keep.push_back({.low = cell, .high = cell});
+        kept.insert(cell);
+      }
+    }
+    const auto asked = with_kept(task, keep);
+    ASSERT_TRUE(asked);
+    const Walk walk(asked.value());
+    std::size_t start = 0;
+    for (std::size_t i = 0; i < task.target.existing.size(); ++i) {
+      start |= kept.contains(task.target.existing[i]) ? std::size_t{1} << i : 0;
+    }
+    const auto result = find_robot_order(asked.value());
+    ASSERT_EQ(bool(result), walk.is_safe(start)) << "seed " << seed;
+    if (!result) {
+      EXPECT_EQ(result.error().where, kAtStart);
+      continue;
+    }
+    const Order& order = result.value().order;
+    ASSERT_EQ(order.outcome == OrderOutcome::kFound, walk.has_order()) << "seed " << seed;
+    if (!walk.has_order()) {
+      ++none_count;
+      expect_cut(walk, result.value().certificate->closure);
+      EXPECT_TRUE(verify(*result.value().certificate));
+      continue;
+    }
+    ++found_count;
+    EXPECT_EQ(bits_of(order.start), start);
+    expect_order(walk, order);
+  }
+  EXPECT_GE(found_count, holdfast::test::least(200, 20));
+  EXPECT_GE(none_count, holdfast::test::least(30, 20));
+}
+
+TEST(RobotOrder, keeps_what_is_fixed_beside_what_is_kept) {
+  OrderTask task{.target = {.existing = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, .fixed = {{0, 0, 0}}}};
+  const std::vector<CellBox> both = {{.low = {1, 0, -5}, .high = {1, 9, 9}}};
+  EXPECT_EQ(with_kept(task, both).value().start, (Cells{{0, 0, 0}, {1, 0, 0}}));
+  EXPECT_EQ(with_kept(task, {}).value().start, Cells{});
+  task.start = {{0, 0, 0}};
+  const auto late = with_kept(task, both);
+  EXPECT_EQ(late.error().where, kAtStart);
+  EXPECT_NE(late.error().message.find("no step attaches or detaches it"), std::string::npos);
+  const std::vector<CellBox> nothing = {{.low = {0, 0, 1}, .high = {9, 9, 9}}};
+  EXPECT_EQ(with_kept(task, nothing).error().message,
+            "the box from (0,0,1) to (9,9,9) is to be kept, but no module is in it");
+}
+
 /// The largest load ratio, with all digits: that of multigrid may be off by 1e-4.
 double exact_ratio(const model::RobotSpec& spec) {
   const verdict::Assessment found =

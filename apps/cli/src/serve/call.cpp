@@ -15,7 +15,7 @@ namespace holdfast::cli {
 namespace {
 
 constexpr std::array kHidden = {"help", "quiet", "json", "vtk", "trace", "threads"};
-constexpr std::array kStructureNames = {"FILE", "TARGET", "FROM", "TO", "START"};
+constexpr std::array kStructureNames = {"FILE", "TARGET", "FROM", "TO", "START", "PLAN"};
 
 std::string lower_case(std::string text) {
   std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });

@@ -16,6 +16,7 @@
 #include "holdfast/io/order_report.hpp"       // IWYU pragma: export
 #include "holdfast/plan/order.hpp"            // IWYU pragma: export
 #include "holdfast/plan/order_help.hpp"       // IWYU pragma: export
+#include "holdfast/steps.hpp"
 
 /// The facade's orders: how can a robot be built, module by module, so that it is safe all the way?
 ///
@@ -26,6 +27,8 @@ namespace holdfast {
 
 struct OrderRequest {
   std::vector<base::Cell> start = {};  ///< As of plan::OrderTask.
+  /// Modules that no step attaches or detaches, as of plan::with_kept(): all in these boxes.
+  std::vector<plan::CellBox> keep = {};
   plan::ReachRule rule = {};
   std::size_t group_size = 1;
   std::size_t parallel_max = 1;  ///< As of plan::OrderTask.
@@ -53,20 +56,18 @@ std::string order_html(const io::OrderReport& report, std::string_view more = {}
                        int thread_count = 0);
 
 /// Seeks an order for all modules of a document, existing or planned. Errors: those of
-/// io::make_spec() and plan::find_robot_order().
+/// io::make_spec(), plan::with_kept() and plan::find_robot_order().
 base::Result<io::OrderReport> seek_order(const io::Document& target, const OrderRequest& request);
-
-/// The place of an error that is that of the plan which is gone on with.
-inline constexpr const char* kAtPlan = "plan";
 
 /// Goes on with an order's plan, the structure of io::order_steps(). `done_count` of its steps are
 /// done, and `file` is the robot that it was made for; or without a count `file` is the robot as it
 /// is now. The last steps of the plan, as many as are safe and have a way one after another, are
 /// kept where an order is found that leads to them (io::OrderReport::kept_count), else the rest is
-/// an order anew. Modules that are there already, or gone, are left out of the steps. The start of
-/// the request counts for nothing. Errors: those of seek_order(); the plan has no steps, or does
-/// else than attach or detach, or is that of another robot, or has fewer steps, or its steps do not
-/// go with the groups of the request (then `where` is kAtPlan).
+/// an order anew. Modules that are there already, or gone, are left out of the steps, and so are
+/// kept ones that they would detach. The start of the request counts for nothing. Errors: those of
+/// seek_order(); the plan has no steps, or does else than attach or detach, or is that of another
+/// robot, or has fewer steps, or its steps do not go with the groups of the request (then `where`
+/// is kAtPlan).
 base::Result<io::OrderReport> continue_order(const io::Document& file, const io::Document& plan,
                                              std::optional<std::size_t> done_count,
                                              const OrderRequest& request);

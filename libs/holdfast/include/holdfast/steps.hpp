@@ -23,6 +23,9 @@
 ///     if (!result.value().judgement.first_unsafe) { ... }
 namespace holdfast {
 
+/// The place of an error that is that of a plan which is gone on with.
+inline constexpr const char* kAtPlan = "plan";
+
 /// A structure whose steps can be judged.
 struct StepsFile {
   std::string name;  ///< The document's, or the file's without folder and ending.

@@ -15,6 +15,7 @@
 #include "holdfast/plan/sequence.hpp"
 #include "orders/order_options.hpp"
 #include "orders/order_rest.hpp"
+#include "plan_tail.hpp"
 
 namespace holdfast {
 namespace {
@@ -23,9 +24,6 @@ using base::Cell;
 
 /// What leads to a tail of the plan is sought by so many states.
 constexpr std::size_t kTriedStatesMax = 2000;
-
-/// Steps of the plan are given up one by one, and faster once this number of tails has failed.
-constexpr std::size_t kTriedOneByOne = 8;
 
 /// The state behind a step; of modules in any order, the worst of all parts.
 plan::Judgement judged_of(const plan::StepJudgement& step, bool has_parts) {
@@ -39,24 +37,21 @@ plan::Judgement judged_of(const plan::StepJudgement& step, bool has_parts) {
   return worst;
 }
 
-/// Whether all of a step is safe, in one piece, as states of an order are.
-bool is_safe_step(const plan::StepJudgement& step) {
-  return std::ranges::all_of(step.stages, [](const plan::StageJudgement& stage) {
-    return stage.is_safe() && stage.piece_count == 1;
-  });
-}
-
 /// One search for one continuation.
-class Continuation {
+class Continuation final : public PlanTail {
  public:
   Continuation(OrderRest rest, const OrderRequest& request)
       : rest_(std::move(rest)), request_(request) {
     request_.is_reversed = rest_.is_reversed;
     request_.stream = {};
-    request_.start = {rest_.start.begin(), rest_.start.end()};
   }
 
   base::Result<io::OrderReport> run();
+
+  std::size_t step_count() const override { return steps_.size(); }
+
+  base::Result<io::Sequence> steps_from(std::size_t first) const override;
+  bool is_allowed(std::size_t step) const override;
 
  private:
   double seconds_passed() const {
@@ -73,9 +68,9 @@ class Continuation {
   std::vector<Cell> cells_of(const std::vector<plan::Element>& elements) const;
   plan::ElementSet least_of_chain() const;
   void make_chain();
-  bool has_way(const plan::ReachFinder& finder, std::size_t step) const;
   base::Result<io::Document> tail_document(std::size_t first) const;
-  std::optional<base::Error> judge_tail();
+  std::optional<base::Error> judge_steps();
+  std::optional<base::Result<io::OrderReport>> lead_to(std::size_t first) const;
   base::Result<io::OrderReport> search();
   base::Result<io::OrderReport> anew();
   base::Result<plan::RobotOrder> seek(std::size_t first) const;
@@ -85,7 +80,8 @@ class Continuation {
   OrderRequest request_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   plan::OrderTask task_;
-  model::CellIndex index_{0};                ///< Of the target's modules.
+  model::CellIndex index_{0};  ///< Of the target's modules.
+  std::optional<plan::ReachFinder> finder_;
   std::vector<plan::Batch> steps_;           ///< Of the plan, as far as they are left to do.
   bool is_any_order_ = false;                ///< Whether their modules come so.
   std::vector<plan::ElementSet> states_;     ///< Before each of them, and behind the last.
@@ -176,14 +172,14 @@ void Continuation::make_chain() {
 }
 
 /// Whether the modules of a step get to their cells, or leave them.
-bool Continuation::has_way(const plan::ReachFinder& finder, std::size_t step) const {
+bool Continuation::is_allowed(std::size_t step) const {
   plan::ElementSet state = states_[rest_.is_reversed ? step + 1 : step];
   const std::vector<Cell> cells = cells_of(steps_[step]);
   if (is_any_order_) {
-    return finder.can_reach_in_any_order(state, cells);
+    return finder_->can_reach_in_any_order(state, cells);
   }
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (!finder.can_reach(state, cells[i])) {
+    if (!finder_->can_reach(state, cells[i])) {
       return false;
     }
     state.insert(steps_[step][i]);
@@ -215,42 +211,28 @@ base::Result<io::Document> Continuation::tail_document(std::size_t first) const 
   return document;
 }
 
-/// Judges the steps by the code of holdfast steps, and finds from which on all are safe and have a
-/// way. One that cannot be done, as it would leave pieces, is not kept, nor are those before it.
-std::optional<base::Error> Continuation::judge_tail() {
-  const std::size_t count = steps_.size();
-  judgements_.assign(count, {});
-  first_safe_ = count;
+base::Result<io::Sequence> Continuation::steps_from(std::size_t first) const {
+  const auto document = tail_document(first);
+  return document ? io::make_sequence(document.value())
+                  : base::Result<io::Sequence>(document.error());
+}
+
+std::optional<base::Error> Continuation::judge_steps() {
   plan::SequenceOptions options;
   options.solver.thread_count = request_.thread_count;
   if (!request_.is_exact) {
     options.solved_count_max = plan::kExactModuleCount;
   }
   options.is_interrupted = [&] { return is_over(); };
-  const plan::ReachFinder finder(task_.target, task_.rule);
-  for (std::size_t first = 0; first < count && !is_over();) {
-    const auto document = tail_document(first);
-    const auto sequence = document ? io::make_sequence(document.value())
-                                   : base::Result<io::Sequence>(document.error());
-    if (!sequence) {
-      return sequence.error();
-    }
-    const auto judged =
-        plan::judge_sequence(sequence.value().start, sequence.value().steps, options);
-    if (!judged) {
-      const std::string& where = judged.error().where;
-      first += where.empty() ? 1 : 1 + std::stoul(where);
-      continue;
-    }
-    const std::vector<plan::StepJudgement>& found = judged.value().steps;
-    const bool is_whole = found.size() == count - first;
-    for (std::size_t i = found.size();
-         is_whole && i > 0 && is_safe_step(found[i - 1]) && has_way(finder, first + i - 1); --i) {
-      first_safe_ = first + i - 1;
-      judgements_[first_safe_] =
-          judged_of(found[i - 1], is_any_order_ && steps_[first_safe_].size() > 1);
-    }
-    break;
+  const auto kept = judge_tail(*this, 0, options);
+  if (!kept) {
+    return kept.error();
+  }
+  first_safe_ = kept.value().first;
+  judgements_.assign(first_safe_, {});
+  for (const plan::StepJudgement& step : kept.value().judged) {
+    const bool has_parts = is_any_order_ && steps_[judgements_.size()].size() > 1;
+    judgements_.push_back(judged_of(step, has_parts));
   }
   return std::nullopt;
 }
@@ -315,11 +297,19 @@ base::Result<io::OrderReport> Continuation::run() {
     request_.parallel_max =
         std::max(request_.parallel_max, step.is_any_order ? step.cells.size() : 1);
   }
-  task_ = {.target = std::move(target).value(),
-           .start = request_.start,
-           .rule = request_.rule,
-           .group_size = request_.group_size,
-           .parallel_max = request_.parallel_max};
+  if (rest_.is_reversed) {
+    const auto kept = plan::kept_modules(request_.keep, target.value().existing);
+    if (!kept) {
+      return kept.error();
+    }
+    rest_.start.insert(kept.value().begin(), kept.value().end());
+  }
+  request_.start = {rest_.start.begin(), rest_.start.end()};
+  auto task = order_task(std::move(target).value(), request_);
+  if (!task) {
+    return task.error();
+  }
+  task_ = std::move(task).value();
   task_.parallel_max = std::min(task_.parallel_max, task_.target.existing.size());
   index_ = model::CellIndex(task_.target.existing.size());
   for (std::size_t i = 0; i < task_.target.existing.size(); ++i) {
@@ -329,32 +319,40 @@ base::Result<io::OrderReport> Continuation::run() {
     return *std::move(fault);
   }
   make_chain();
-  if (auto fault = judge_tail()) {
+  finder_.emplace(task_.target, task_.rule);
+  if (auto fault = judge_steps()) {
     return *std::move(fault);
   }
   return search();
 }
 
-/// Tries to lead to the steps from one on, the longest tail first.
-base::Result<io::OrderReport> Continuation::search() {
-  std::size_t tried_count = 0;
-  for (std::size_t first = first_safe_; first < steps_.size() && !is_over();
-       first += 1 + tried_count / kTriedOneByOne) {
-    ++tried_count;
-    auto found = seek(first);
-    if (!found && !rest_.is_reversed && found.error().where == plan::kAtStart) {
-      return found.error();
-    }
-    if (found && found.value().order.outcome == plan::OrderOutcome::kFound) {
-      io::OrderReport report{.target = rest_.target, .task = task_};
-      report.result = joined(std::move(found).value(), first);
-      report.is_reversed = rest_.is_reversed;
-      report.seconds = seconds_passed();
-      report.kept_count = steps_.size() - first;
-      return report;
-    }
+/// What leads to a tail, and the tail; an error of the start, which no other tail is without; or
+/// nothing.
+std::optional<base::Result<io::OrderReport>> Continuation::lead_to(std::size_t first) const {
+  auto found = seek(first);
+  if (!found && !rest_.is_reversed && found.error().where == plan::kAtStart) {
+    return found.error();
   }
-  return anew();
+  if (!found || found.value().order.outcome != plan::OrderOutcome::kFound) {
+    return std::nullopt;
+  }
+  io::OrderReport report{.target = rest_.target, .task = task_};
+  report.result = joined(std::move(found).value(), first);
+  report.is_reversed = rest_.is_reversed;
+  report.seconds = seconds_passed();
+  report.kept_count = steps_.size() - first;
+  return report;
+}
+
+base::Result<io::OrderReport> Continuation::search() {
+  std::optional<base::Result<io::OrderReport>> found;
+  lead_to_tail(
+      first_safe_, steps_.size(), [this] { return is_over(); },
+      [&](std::size_t first) {
+        found = lead_to(first);
+        return found.has_value();
+      });
+  return found ? *std::move(found) : anew();
 }
 
 /// An order for all that is left, whatever the plan says.

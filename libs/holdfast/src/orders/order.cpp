@@ -18,14 +18,12 @@ base::Result<io::OrderReport> seek_order(const io::Document& target, const Order
   if (!spec) {
     return spec.error();
   }
-  io::OrderReport report{.target = target,
-                         .task = {.target = std::move(spec).value(),
-                                  .start = request.start,
-                                  .rule = request.rule,
-                                  .group_size = request.group_size,
-                                  .parallel_max = request.parallel_max,
-                                  .in_pieces = request.in_pieces},
-                         .is_reversed = request.is_reversed};
+  auto task = order_task(std::move(spec).value(), request);
+  if (!task) {
+    return task.error();
+  }
+  io::OrderReport report{
+      .target = target, .task = std::move(task).value(), .is_reversed = request.is_reversed};
   plan::StepListener certified;
   if (request.stream) {
     certified = [&, number = std::size_t{0}](const plan::Batch& step,
@@ -38,7 +36,12 @@ base::Result<io::OrderReport> seek_order(const io::Document& target, const Order
   options.certified = certified;
   auto result = plan::find_robot_order(report.task, options);
   if (!result) {
-    return io::with_other_lattice(result.error(), target);
+    base::Error error = result.error();
+    if (error.where == plan::kAtStart && request.start.empty() && !request.keep.empty()) {
+      error.message +=
+          "; the start is what is fixed and what is to be kept: give one that holds it";
+    }
+    return io::with_other_lattice(error, target);
   }
   const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
   report.result = std::move(result).value();

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <utility>
+
 #include "holdfast/order.hpp"
 
 namespace holdfast {
@@ -16,6 +18,18 @@ inline plan::RobotOrderOptions order_options(const OrderRequest& request,
           .progress = request.progress,
           .is_exact = request.is_exact || module_count <= plan::kExactModuleCount,
           .thread_count = request.thread_count};
+}
+
+/// What a request asks of a target. Errors: those of plan::with_kept().
+inline base::Result<plan::OrderTask> order_task(model::RobotSpec target,
+                                                const OrderRequest& request) {
+  return plan::with_kept({.target = std::move(target),
+                          .start = request.start,
+                          .rule = request.rule,
+                          .group_size = request.group_size,
+                          .parallel_max = request.parallel_max,
+                          .in_pieces = request.in_pieces},
+                         request.keep);
 }
 
 }  // namespace holdfast

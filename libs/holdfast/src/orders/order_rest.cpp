@@ -6,6 +6,8 @@
 
 #include <utility>
 
+#include "plan_tail.hpp"
+
 namespace holdfast {
 namespace {
 
@@ -82,8 +84,7 @@ std::optional<base::Error> find_difference(const io::Document& a, const io::Docu
 base::Result<OrderRest> rest_behind(const io::Document& file, const io::Document& document,
                                     const ReadPlan& plan, std::size_t done_count) {
   if (done_count > plan.steps.size()) {
-    return error_of_plan(
-        fmt::format("it has {} steps, of which {} cannot be done", plan.steps.size(), done_count));
+    return error_of_done_steps(plan.steps.size(), done_count);
   }
   const io::Document whole = io::with_all_modules(document);
   if (const auto fault = find_difference(file, whole, true)) {
@@ -126,10 +127,6 @@ base::Result<OrderRest> rest_of_state(const io::Document& file, const io::Docume
 }
 
 }  // namespace
-
-base::Error error_of_plan(std::string message) {
-  return {.code = base::ErrorCode::kBadInput, .message = std::move(message), .where = kAtPlan};
-}
 
 base::Result<OrderRest> read_order_rest(const io::Document& file, const io::Document& plan,
                                         std::optional<std::size_t> done_count) {

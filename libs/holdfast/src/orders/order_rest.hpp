@@ -27,9 +27,6 @@ struct OrderRest {
   bool is_reversed = false;
 };
 
-/// An error whose place is the plan.
-base::Error error_of_plan(std::string message);
-
 /// Reads what is left: after so many steps, where `file` is the robot that the plan was made for;
 /// or without a count from `file` as the robot is. Errors: those of continue_order() that are the
 /// plan's, and of io::make_spec().

@@ -13,6 +13,7 @@
 #include "holdfast/io/csv.hpp"
 #include "json/json_text.hpp"
 #include "json/json_values.hpp"
+#include "report/kept_text.hpp"
 
 namespace holdfast::io {
 namespace {
@@ -186,6 +187,9 @@ std::string move_json(const MoveReport& report, const std::vector<std::string>& 
                        member("seconds", json_text(report.seconds)),
                        member("certificate", certificate_text(plan))};
   items.insert(items.end(), found.begin(), found.end());
+  if (report.kept_count) {
+    items.push_back(member("kept", fmt::format("{}", *report.kept_count)));
+  }
   items.insert(items.end(), more.begin(), more.end());
   return lines('{', items, '}', 0) + "\n";
 }
@@ -214,6 +218,9 @@ std::string move_text(const MoveReport& report) {
   std::string text = headline(report);
   if (plan.certificate) {
     text += proof_words(*plan.certificate);
+  }
+  if (plan.outcome == MoveOutcome::kFound) {
+    text += kept_words(report.kept_count, plan.steps.size());
   }
   if (plan.outcome != MoveOutcome::kNone) {
     text += fmt::format("  assignment  at least {}\n",

@@ -13,6 +13,7 @@
 #include "holdfast/io/csv.hpp"
 #include "holdfast/io/order_certificate.hpp"
 #include "json/json_text.hpp"
+#include "report/kept_text.hpp"
 
 namespace holdfast::io {
 namespace {
@@ -61,7 +62,8 @@ std::string help_text(const OrderReport& report) {
   return object({member("supports", json_text(report.help->supports)),
                  member("temporary", json_text(report.help->temporary)),
                  member("reach", rule ? json_text(std::string(plan::name(rule->reach))) : "null"),
-                 member("source", rule && rule->source ? json_text(*rule->source) : "null")});
+                 member("source", rule && rule->source ? json_text(*rule->source) : "null"),
+                 member("pieces", report.help->in_pieces ? "true" : "false")});
 }
 
 std::string words(const std::vector<base::Cell>& cells) {
@@ -93,15 +95,23 @@ std::string help_words(const OrderReport& report) {
     return "  help        no single support and no few temporary modules found that would "
            "suffice\n";
   }
-  if (report.help->rule) {
-    return way_words(report.task, *report.help->rule);
+  const plan::Help& help = *report.help;
+  const std::string pieces =
+      help.in_pieces ? "  help        in several pieces there is an order: seek it with --pieces\n"
+                     : "";
+  if (help.rule) {
+    return way_words(report.task, *help.rule) + pieces;
   }
-  const bool is_support = !report.help->supports.empty();
+  const bool is_support = !help.supports.empty();
+  if (!is_support && help.temporary.empty()) {
+    return pieces;
+  }
   return fmt::format("  help        {}: {}\n",
                      is_support ? "with a support in this cell there is an order"
                                 : "with these modules, attached on the way and detached at the "
                                   "end, there is an order",
-                     words(is_support ? report.help->supports : report.help->temporary));
+                     words(is_support ? help.supports : help.temporary)) +
+         pieces;
 }
 
 /// Says how far the search got.
@@ -170,14 +180,6 @@ std::string found_words(const OrderReport& report) {
       steps, host::counted(count, "module"), report.is_reversed ? "gone" : "come",
       host::counted(largest_batch(order), "module"),
       host::counted(report.result.step_count_least.value_or(0), "step"));
-}
-
-/// Says how much of a plan that is gone on with is in the order.
-std::string kept_words(const OrderReport& report) {
-  return report.kept_count ? fmt::format("  kept        the last {} of the plan, after {} new\n",
-                                         host::counted(*report.kept_count, "step"),
-                                         report.result.order.steps.size() - *report.kept_count)
-                           : "";
 }
 
 std::string parallel_text(const OrderReport& report) {
@@ -303,7 +305,7 @@ std::string order_text(const OrderReport& report) {
                                   : " that keeps the robot in one piece\n") +
            none_words(report) + help_words(report) + examined;
   }
-  std::string text = found_words(report) + kept_words(report);
+  std::string text = found_words(report) + kept_words(report.kept_count, order.steps.size());
   text += load_ratio_words(report.result);
   if (report.result.margin_min_mm) {
     text += fmt::format("  margin      {} mm at least on the way\n",

@@ -63,11 +63,12 @@ class MoveFinder {
     return !is_taken(axial) && (!rule_.floor_z || cell.z >= *rule_.floor_z);
   }
 
-  /// Whether a module or an obstacle is in a cell, axial.
+  /// Whether a module or an obstacle is in a cell, axial, or it is to be avoided.
   bool is_taken(const Cell& axial) const {
     const Cell cell = base::cell_of(lattice_, axial);
     return robot_.find(cell) != RobotState::kNone ||
-           robot_.obstacles().find(cell) != model::CellIndex::kNone;
+           robot_.obstacles().find(cell) != model::CellIndex::kNone ||
+           rule_.avoid.find(cell) != model::CellIndex::kNone;
   }
 
   bool is_module(const Cell& axial) const {
@@ -251,7 +252,7 @@ std::vector<std::int32_t> loose_modules(const RobotState& robot) {
                                                                              : RobotState::kNone;
       });
   for (std::size_t i = 0; i < modules.size(); ++i) {
-    if (modules[i].is_there && !modules[i].is_fixed && !is_cut[i]) {
+    if (modules[i].is_there && !modules[i].stays() && !is_cut[i]) {
       loose.push_back(static_cast<std::int32_t>(i));
     }
   }

@@ -9,8 +9,8 @@
 #include <string>
 #include <utility>
 
-#include "barring_floor.hpp"
 #include "moves/move_judge.hpp"
+#include "moves/move_rules.hpp"
 #include "moves/shape_search.hpp"
 #include "moves/slide_moves.hpp"
 #include "moves/surface_planner.hpp"
@@ -19,12 +19,6 @@ namespace holdfast::plan {
 namespace {
 
 using base::Cell;
-
-MoveRule rule_of(const MoveTask& task) {
-  return {.motions = task.motions,
-          .floor_z = barring_floor(task.start.support_z, task.start.existing, task.target.existing),
-          .within = task.within};
-}
 
 /// What is wrong with one of the two robots; `which` says which.
 std::optional<base::Error> find_robot_fault(const MoveTask& task, const model::RobotSpec& spec,
@@ -52,15 +46,7 @@ std::optional<base::Error> find_robot_fault(const MoveTask& task, const model::R
   if (!robot) {
     return base::bad_input(which + ": " + robot.error().message);
   }
-  for (const Cell& cell : spec.existing) {
-    const bool is_fixed = std::ranges::find(spec.fixed, cell) != spec.fixed.end();
-    if (task.within && !is_fixed && !task.within->contains(cell)) {
-      return base::bad_input(fmt::format("{}: the module {} is outside the box from {} to {}",
-                                         which, model::text(cell), model::text(task.within->low),
-                                         model::text(task.within->high)));
-    }
-  }
-  return std::nullopt;
+  return find_cell_fault(task, spec, which);
 }
 
 /// A task whose robots can be computed.
@@ -79,7 +65,13 @@ base::Result<Problem> make_problem(const MoveTask& task) {
   if (auto fault = find_robot_fault(task, task.target, "the target")) {
     return *std::move(fault);
   }
-  auto space = ShapeSpace::create(RobotState(task.start), RobotState(task.target));
+  for (const Cell& cell : task.keep) {
+    if (std::ranges::find(task.start.existing, cell) == task.start.existing.end()) {
+      return base::bad_input(
+          fmt::format("the cell {} is to be kept, but no module is there", model::text(cell)));
+    }
+  }
+  auto space = ShapeSpace::create(kept_state(task, task.start), kept_state(task, task.target));
   if (!space) {
     return space.error();
   }

@@ -35,8 +35,8 @@ Alike alike_of(const RobotState& robot, std::int32_t index) {
 }
 
 struct Classes {
-  std::map<Alike, std::vector<Cell>> cells;  ///< Of modules that are not fixed.
-  std::map<Cell, Alike> fixed;
+  std::map<Alike, std::vector<Cell>> cells;        ///< Of modules that do not stay.
+  std::map<Cell, std::pair<bool, Alike>> staying;  ///< And whether they are fixed.
 };
 
 Classes classes_of(const RobotState& robot) {
@@ -44,8 +44,8 @@ Classes classes_of(const RobotState& robot) {
   for (std::size_t i = 0; i < robot.modules().size(); ++i) {
     const auto index = static_cast<std::int32_t>(i);
     const ModuleState& module = robot.module(index);
-    if (module.is_fixed) {
-      classes.fixed.emplace(module.cell, alike_of(robot, index));
+    if (module.stays()) {
+      classes.staying.emplace(module.cell, std::pair(module.is_fixed, alike_of(robot, index)));
     } else {
       classes.cells[alike_of(robot, index)].push_back(module.cell);
     }
@@ -74,17 +74,18 @@ std::optional<base::Error> find_fault(const RobotState& start, const RobotState&
         fmt::format("the robot has {} and its target {}; expected shapes of the same modules",
                     host::counted(start.module_count(), "module"), target.module_count()));
   }
-  for (const auto& [cell, alike] : from.fixed) {
-    const auto found = to.fixed.find(cell);
-    if (found == to.fixed.end() || found->second != alike) {
+  for (const auto& [cell, module] : from.staying) {
+    const auto found = to.staying.find(cell);
+    if (found == to.staying.end() || found->second != module) {
+      const bool is_fixed = module.first;
       return bad_pair(fmt::format(
-          "the module {} is fixed, and the target has no such fixed module there; fixed modules "
-          "do not move",
-          model::text(cell)));
+          "the module {} is {}, and the target has no such {}module there; {} modules do not move",
+          model::text(cell), is_fixed ? "fixed" : "to be kept", is_fixed ? "fixed " : "",
+          is_fixed ? "fixed" : "kept"));
     }
   }
   const auto count = [](const auto& entry) { return std::pair(entry.first, entry.second.size()); };
-  if (from.fixed.size() != to.fixed.size() ||
+  if (from.staying.size() != to.staying.size() ||
       !std::ranges::equal(from.cells, to.cells, {}, count, count)) {
     return bad_pair(
         "the modules of both robots differ in what is fixed, or in kinds, masses or loads; "

@@ -15,8 +15,8 @@
 /// Shapes of a robot: where its modules are, no matter which of those that are alike.
 namespace holdfast::plan {
 
-/// The cells of all modules that are not fixed, class by class, ascending in each. Modules of one
-/// class are of one kind, mass and payload.
+/// The cells of all modules that do not stay (ModuleState::stays), class by class, ascending in
+/// each. Modules of one class are of one kind, mass and payload.
 using Shape = std::vector<base::Cell>;
 
 /// The hash only finds candidates for equality, so no result depends on it.
@@ -53,7 +53,7 @@ inline constexpr std::size_t kSearchedMax = 60;
 class ShapeSpace {
  public:
   /// Errors: robots that are not made of the same modules in the same surroundings, or have
-  /// different fixed modules.
+  /// different modules that stay.
   static base::Result<ShapeSpace> create(const RobotState& start, const RobotState& target);
 
   /// The way back: start and target have changed places.

@@ -167,15 +167,17 @@ std::optional<SlideTask> slide_task(const ShapeSpace& space, const MoveRule& rul
     const auto place = static_cast<GridCell>(i);
     const Cell cell = task.grid.cell(place);
     if ((rule.within && !rule.within->contains(cell)) ||
-        robot.obstacles().find(cell) != model::CellIndex::kNone) {
+        robot.obstacles().find(cell) != model::CellIndex::kNone ||
+        rule.avoid.find(cell) != model::CellIndex::kNone) {
       task.grid.set(place, SlideGrid::What::kBarred);
     }
     task.is_support[i] = cell.z == robot.surroundings().support_z || is_near_obstacle(robot, cell);
   }
   for (const ModuleState& module : robot.modules()) {
-    if (module.is_there && module.is_fixed) {
-      task.fixed.push_back(number(module.cell));
-      task.is_support[base::at(task.fixed.back())] = true;
+    if (module.is_there && module.stays()) {
+      const GridCell place = number(module.cell);
+      task.fixed.push_back(place);
+      task.is_support[base::at(place)] = task.is_support[base::at(place)] || module.is_fixed;
     }
   }
   return task;

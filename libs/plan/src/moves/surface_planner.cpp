@@ -44,7 +44,7 @@ SurfacePlanner::SurfacePlanner(const ShapeSpace& space, const MoveRule& rule, Mo
   const RobotState target = space.state_of(space.target());
   std::vector<Cell> seeds;
   for (const ModuleState& module : target.modules()) {
-    if (module.is_there && (module.is_fixed || !std::ranges::binary_search(goals, module.cell))) {
+    if (module.is_there && (module.stays() || !std::ranges::binary_search(goals, module.cell))) {
       seeds.push_back(module.cell);
     }
   }
@@ -97,7 +97,7 @@ SurfacePlanner::Frame SurfacePlanner::make_frame(Shape shape, std::vector<model:
   std::ranges::stable_sort(frame.goals, {}, [&](const Cell& cell) { return fill_rank_.at(cell); });
   std::vector<Cell> seeds;
   for (const ModuleState& module : frame.robot.modules()) {
-    if (module.is_there && (module.is_fixed || fill_rank_.contains(module.cell))) {
+    if (module.is_there && (module.stays() || fill_rank_.contains(module.cell))) {
       seeds.push_back(module.cell);
     }
   }

@@ -336,6 +336,26 @@ void raise(std::optional<double>& largest, double value) {
 
 }  // namespace
 
+base::Result<OrderTask> with_kept(OrderTask task, std::span<const CellBox> keep) {
+  const auto kept = kept_modules(keep, task.target.existing);
+  if (!kept) {
+    return kept.error();
+  }
+  std::set<Cell> start(task.start.begin(), task.start.end());
+  for (const Cell& cell : kept.value()) {
+    if (start.insert(cell).second && !task.start.empty()) {
+      return bad_start(fmt::format(
+          "the module {} is to be kept, and is not in the start: no step attaches or detaches it",
+          model::text(cell)));
+    }
+  }
+  if (task.start.empty() && !kept.value().empty()) {
+    start.insert(task.target.fixed.begin(), task.target.fixed.end());
+    task.start = {start.begin(), start.end()};
+  }
+  return task;
+}
+
 base::Result<RobotOrder> find_robot_order(const OrderTask& task, const RobotOrderOptions& options) {
   const auto setting = make_setting(task, options.thread_count);
   if (!setting) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -49,6 +50,9 @@ class HelpSearch {
 
   std::optional<Help> run();
 
+  /// Whether there is an order in pieces, of a robot that needs help to be built in one.
+  bool do_pieces_help() const;
+
  private:
   bool is_free(const Cell& cell) const;
   void list_cells();
@@ -56,7 +60,8 @@ class HelpSearch {
   std::vector<Help> other_sources() const;
   std::optional<Help> try_all(const std::vector<Help>& helps) const;
   bool serves(const Help& help) const;
-  bool has_order(const OrderTask& task) const;
+  bool has_order(const OrderTask& task,
+                 double seconds_max = std::numeric_limits<double>::infinity()) const;
 
   const OrderTask& task_;
   const HelpOptions& options_;
@@ -117,11 +122,21 @@ std::vector<std::vector<Cell>> HelpSearch::runs() const {
   return {found.begin(), found.end()};
 }
 
-bool HelpSearch::has_order(const OrderTask& task) const {
-  const auto found = find_robot_order(task, {.state_count_max = options_.state_count_max,
+bool HelpSearch::has_order(const OrderTask& task, double seconds_max) const {
+  const auto found = find_robot_order(task, {.seconds_max = seconds_max,
+                                             .state_count_max = options_.state_count_max,
                                              .is_interrupted = options_.is_interrupted,
                                              .thread_count = options_.thread_count});
   return found && found.value().order.outcome == OrderOutcome::kFound;
+}
+
+bool HelpSearch::do_pieces_help() const {
+  if (task_.in_pieces || task_.group_size > 1 || task_.parallel_max > 1) {
+    return false;
+  }
+  OrderTask task = task_;
+  task.in_pieces = true;
+  return has_order(task, options_.seconds_max / 4);
 }
 
 bool HelpSearch::serves(const Help& help) const {
@@ -203,7 +218,14 @@ std::optional<Help> HelpSearch::run() {
 }  // namespace
 
 std::optional<Help> find_help(const OrderTask& task, const HelpOptions& options) {
-  return HelpSearch(task, options).run();
+  HelpSearch search(task, options);
+  const bool in_pieces = search.do_pieces_help();
+  auto found = search.run();
+  if (in_pieces) {
+    found = found.value_or(Help{});
+    found->in_pieces = true;
+  }
+  return found;
 }
 
 }  // namespace holdfast::plan

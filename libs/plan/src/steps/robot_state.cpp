@@ -149,6 +149,10 @@ void RobotState::remove(const Cell& cell) {
   std::erase_if(own_connectors_, [&](const auto& own) { return is_of_cell(own.first); });
 }
 
+void RobotState::keep(const Cell& cell) {
+  modules_[static_cast<std::size_t>(index_.at(cell))].is_kept = true;
+}
+
 void RobotState::release(const model::CellPair& pair) { released_.insert(ordered(pair)); }
 
 void RobotState::connect(const model::CellPair& pair) { released_.erase(ordered(pair)); }

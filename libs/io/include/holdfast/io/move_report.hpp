@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +23,8 @@ struct MoveReport {
   plan::MovePlan plan = {};
   double seconds = 0;
   bool is_interrupted = false;  ///< The search was ended from outside.
+  /// Where a plan is gone on with: how many of its steps are the last ones of this one.
+  std::optional<std::size_t> kept_count = {};
 };
 
 /// The robot of a document as it stands; `which` is what a message calls it. Errors: those of
@@ -50,6 +54,10 @@ std::string move_lines(const MoveReport& report);
 
 /// The start with the steps that were found.
 Document move_steps(const MoveReport& report);
+
+/// The structure after steps that move modules, which take along all that they have, loads too; it
+/// has no plan. Error: a module is not where a move begins, or one is where it ends.
+base::Result<Document> after_moves(Document document, std::span<const model::Step> steps);
 
 /// The certificate in a report that move_json() has written, for the same task. Errors: no such
 /// report, or one without a certificate.

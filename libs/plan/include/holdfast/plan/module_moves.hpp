@@ -8,24 +8,15 @@
 #include <vector>
 
 #include "holdfast/base/result.hpp"
+#include "holdfast/model/cell_index.hpp"
 #include "holdfast/model/step.hpp"
+#include "holdfast/plan/cell_box.hpp"
 #include "holdfast/plan/motions.hpp"
 #include "holdfast/plan/robot_state.hpp"
 #include "holdfast/plan/transition.hpp"
 
 /// Where single modules of a robot can go in one step.
 namespace holdfast::plan {
-
-/// All cells between two corners, which belong to it.
-struct CellBox {
-  base::Cell low;
-  base::Cell high;
-
-  bool contains(const base::Cell& cell) const {
-    return low.x <= cell.x && cell.x <= high.x && low.y <= cell.y && cell.y <= high.y &&
-           low.z <= cell.z && cell.z <= high.z;
-  }
-};
 
 /// What bars a module's way besides modules and obstacles.
 struct MoveRule {
@@ -35,10 +26,13 @@ struct MoveRule {
   std::optional<std::int32_t> floor_z = {};
   /// No module leaves it.
   std::optional<CellBox> within = {};
+  /// Cells that no module enters or sweeps, and that carry nothing.
+  model::CellIndex avoid{0};
 };
 
-/// The modules without which all others are still one piece, and which are not fixed: indices,
-/// ascending. By lowest points of a depth-first search [Tarjan 1972].
+/// The modules without which all others are still one piece, and which stay neither as they are
+/// fixed nor as they are kept: indices, ascending. By lowest points of a depth-first search [Tarjan
+/// 1972].
 std::vector<std::int32_t> loose_modules(const RobotState& robot);
 
 /// Every move of one module that find_transition() takes and the rule allows, slides first. A

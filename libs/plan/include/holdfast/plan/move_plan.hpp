@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "holdfast/base/result.hpp"
@@ -25,6 +26,8 @@ struct MoveTask {
   model::RobotSpec target;                      ///< Modules alike are interchangeable.
   std::shared_ptr<const Motions> motions = {};  ///< As of MoveRule.
   std::optional<CellBox> within = {};
+  std::vector<base::Cell> avoid = {};  ///< As of MoveRule.
+  std::vector<base::Cell> keep = {};  ///< Modules that no step moves; they may be outside `within`.
   /// Steps need not be safe: neither strength nor balance is judged, but that something holds the
   /// robot.
   bool ignores_mechanics = false;
@@ -56,12 +59,19 @@ enum class MoveOutcome : std::uint8_t {
 /// "found", "none", "not-found".
 const char* name(MoveOutcome outcome);
 
+/// Whether a plan for the task may have each of these steps, as far as geometry goes: a move by its
+/// rules, of a module that does not stay and without which all others are in one piece. Each step
+/// moves one module, from where one is to a free cell, the first one in the robot `start`.
+std::vector<bool> allowed_steps(const MoveTask& task, const model::RobotSpec& start,
+                                std::span<const model::Step> steps);
+
 /// Proves that there is no plan.
 struct MoveCertificate {
   MoveTask task;
   /// The target's judgement if it is not safe: nothing more is to be proved, `shapes` is empty.
   std::optional<Judgement> target = {};
-  /// Shapes, each as the cells of all modules that are not fixed, those alike together: the start
+  /// Shapes, each as the cells of all modules that are neither fixed nor kept, those alike
+  /// together: the start
   /// is one of them, the target is none, and no safe step leads out.
   std::vector<std::vector<base::Cell>> shapes = {};
   /// The other way round: the target is one of them, the start is none, and no safe step leads in.
@@ -89,7 +99,8 @@ struct MovePlan {
 };
 
 /// Errors: start or target is no robot, the start is not safe; shapes of different robots or in
-/// different surroundings; motions of another lattice; a module outside the box.
+/// different surroundings; motions of another lattice; a module outside the box, or in a cell to be
+/// avoided; a module to be kept that is not there, or that the target lacks.
 base::Result<MovePlan> find_moves(const MoveTask& task, const MoveOptions& options = {});
 
 /// What has been replayed of a certificate.

@@ -11,6 +11,7 @@
 #include "holdfast/base/cell.hpp"
 #include "holdfast/base/result.hpp"
 #include "holdfast/model/robot.hpp"
+#include "holdfast/plan/cell_box.hpp"
 #include "holdfast/plan/order_search.hpp"
 #include "holdfast/plan/reach.hpp"
 
@@ -34,6 +35,11 @@ struct OrderTask {
   /// pieces, each of which is judged by itself. Only for single modules.
   bool in_pieces = false;
 };
+
+/// The task in which the modules in these boxes are there before the first step, as no step may
+/// attach or detach them: without a start they and the fixed modules are the start. Errors: those
+/// of kept_modules(); the start has not all of them (then `where` is kAtStart).
+base::Result<OrderTask> with_kept(OrderTask task, std::span<const CellBox> keep);
 
 /// Hears of a step of an order, and of the state behind it.
 using StepListener = std::function<void(const Batch& step, const Judgement& judged)>;

@@ -25,8 +25,12 @@ struct ModuleState {
   std::uint16_t kind = 0;  ///< Index in RobotSpec::kinds.
   bool is_there = true;    ///< False: a place that the next new module takes.
   bool is_fixed = false;
+  bool is_kept = false;  ///< No plan may move it.
   std::optional<double> own_mass_kg = {};
   std::optional<model::Payload> payload = {};  ///< Its cell is void.
+
+  /// Whether moves leave it where it is.
+  bool stays() const { return is_fixed || is_kept; }
 
   friend bool operator==(const ModuleState&, const ModuleState&) = default;
 };
@@ -93,6 +97,7 @@ class RobotState {
   /// The caller sees to it that cells are free, or hold a module, as it must be.
   void add(const ModuleState& added);
   void remove(const base::Cell& cell);
+  void keep(const base::Cell& cell);  ///< Marks its module as kept.
   void release(const model::CellPair& pair);
   void connect(const model::CellPair& pair);
 

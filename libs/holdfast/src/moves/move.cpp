@@ -8,12 +8,11 @@
 #include <chrono>
 #include <utility>
 
+#include "moves/move_task.hpp"
 #include "plan_page.hpp"
 
 namespace holdfast {
-namespace {
 
-/// Both ends with the safety factor that either states.
 base::Result<std::pair<io::Document, io::Document>> with_one_factor(io::Document start,
                                                                     io::Document target) {
   double& from = start.extension.safety_factor;
@@ -35,13 +34,27 @@ base::Result<plan::MoveTask> task_of(const io::Document& start, const io::Docume
     return task.error();
   }
   plan::MoveTask made = std::move(task).value();
+  auto kept = plan::kept_modules(request.keep, made.start.existing);
+  if (!kept) {
+    return kept.error();
+  }
+  made.keep = std::move(kept).value();
   made.motions = request.motions;
   made.within = request.within;
+  made.avoid = request.avoid;
   made.ignores_mechanics = request.ignores_mechanics;
   return made;
 }
 
-}  // namespace
+plan::MoveOptions move_options(const MoveRequest& request) {
+  plan::MoveOptions options;
+  options.seed = request.seed;
+  options.seconds_max = request.seconds_max;
+  options.is_interrupted = request.is_interrupted;
+  options.progress = request.progress;
+  options.solver.thread_count = request.thread_count;
+  return options;
+}
 
 base::Result<std::shared_ptr<const plan::Motions>> find_motions(const std::string& name_or_file) {
   if (name_or_file == "pivoting") {
@@ -76,13 +89,7 @@ base::Result<io::MoveReport> seek_moves(const io::Document& start_stated,
     return task.error();
   }
   const auto begin = std::chrono::steady_clock::now();
-  plan::MoveOptions options;
-  options.seed = request.seed;
-  options.seconds_max = request.seconds_max;
-  options.is_interrupted = request.is_interrupted;
-  options.progress = request.progress;
-  options.solver.thread_count = request.thread_count;
-  auto plan = plan::find_moves(task.value(), options);
+  auto plan = plan::find_moves(task.value(), move_options(request));
   if (!plan) {
     base::Error error = io::with_other_lattice(plan.error(), start);
     return error.message == plan.error().message ? io::with_other_lattice(error, target) : error;
