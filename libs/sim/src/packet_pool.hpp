@@ -2,10 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <bit>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <span>
 #include <vector>
+
+#include "holdfast/base/check.hpp"
 
 /// Packets under way, in slots of one size that are used again and again.
 namespace holdfast::sim {
@@ -22,12 +27,15 @@ class PacketPool {
   explicit PacketPool(int packet_bytes)
       : slot_bytes_((sizeof(PacketTag) + static_cast<std::size_t>(packet_bytes) + 15) / 16 * 16) {}
 
-  /// A slot that holds a copy of `bytes`. Views of other slots become invalid.
+  /// The most slots of a pool.
+  static constexpr std::uint32_t kSlotCountMax = 1U << 26U;
+
+  /// A slot that holds a copy of `bytes`. Other slots stay where they are, so that one thread may
+  /// put packets into a pool while others read those that are there.
   std::uint32_t put(const PacketTag& tag, std::span<const std::uint8_t> bytes) {
     std::uint32_t slot = slot_count_;
     if (spare_.empty()) {
-      ++slot_count_;
-      storage_.resize(slot_count_ * slot_bytes_);
+      grow();
     } else {
       slot = spare_.back();
       spare_.pop_back();
@@ -39,12 +47,12 @@ class PacketPool {
 
   PacketTag tag(std::uint32_t slot) const {
     PacketTag tag;
-    std::memcpy(&tag, storage_.data() + slot * slot_bytes_, sizeof(tag));
+    std::memcpy(&tag, at(slot), sizeof(tag));
     return tag;
   }
 
   std::span<const std::uint8_t> bytes(std::uint32_t slot) const {
-    return {storage_.data() + slot * slot_bytes_ + sizeof(PacketTag), tag(slot).size};
+    return {at(slot) + sizeof(PacketTag), tag(slot).size};
   }
 
   std::span<std::uint8_t> bytes(std::uint32_t slot) {
@@ -53,16 +61,35 @@ class PacketPool {
 
   void release(std::uint32_t slot) { spare_.push_back(slot); }
 
-  void prefetch(std::uint32_t slot) const {
-    __builtin_prefetch(storage_.data() + slot * slot_bytes_);
-  }
+  void prefetch(std::uint32_t slot) const { __builtin_prefetch(at(slot)); }
 
  private:
-  std::uint8_t* at(std::uint32_t slot) { return storage_.data() + slot * slot_bytes_; }
+  static constexpr int kFirstBits = 6;  ///< Chunk i has 2^(kFirstBits + i) slots.
+  static constexpr int kChunkCount = 21;
+
+  static int chunk_of(std::uint32_t slot) {
+    return static_cast<int>(std::bit_width(slot + (1U << kFirstBits))) - kFirstBits - 1;
+  }
+
+  std::uint8_t* at(std::uint32_t slot) const {
+    const int chunk = chunk_of(slot);
+    const std::size_t first = (std::size_t{1} << (kFirstBits + chunk)) - (1U << kFirstBits);
+    return chunks_[static_cast<std::size_t>(chunk)].get() + (slot - first) * slot_bytes_;
+  }
+
+  void grow() {
+    HOLDFAST_CHECK(slot_count_ < kSlotCountMax);
+    const int number = chunk_of(slot_count_++);
+    auto& chunk = chunks_[static_cast<std::size_t>(number)];
+    if (chunk == nullptr) {
+      const std::size_t bytes = slot_bytes_ << (kFirstBits + number);
+      chunk = std::unique_ptr<std::uint8_t[]>(new std::uint8_t[bytes]);  // Without writing to it.
+    }
+  }
 
   std::size_t slot_bytes_;
   std::uint32_t slot_count_ = 0;
-  std::vector<std::uint8_t> storage_;
+  std::array<std::unique_ptr<std::uint8_t[]>, kChunkCount> chunks_;
   std::vector<std::uint32_t> spare_;
 };
 

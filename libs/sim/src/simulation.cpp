@@ -216,9 +216,11 @@ void Simulation::happen(const Announcement& announcement) { engine_->happen(anno
 
 SimulationResult Simulation::result() const { return engine_->result(); }
 
+SimulationResult Simulation::counts() const { return engine_->counts(); }
+
 const agent::Agent& Simulation::agent(std::int32_t module) const { return engine_->agent(module); }
 
-bool Simulation::is_alive(std::int32_t module) const { return engine_->port(module).takes_part(); }
+bool Simulation::is_alive(std::int32_t module) const { return engine_->takes_part(module); }
 
 std::int32_t Simulation::agent_count() const { return engine_->agent_count(); }
 

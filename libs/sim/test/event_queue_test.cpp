@@ -62,16 +62,6 @@ TEST(EventQueue, takes_events_for_the_present_tick_and_for_the_end_of_time) {
   EXPECT_TRUE(queue.is_empty());
 }
 
-TEST(EventQueue, shows_what_comes_next_at_the_same_time) {
-  EventQueue queue;
-  for (std::uint64_t i = 0; i < 5; ++i) {
-    queue.push(3, i);
-  }
-  EXPECT_EQ(queue.pop().content, 0U);
-  ASSERT_NE(queue.peek(1), nullptr);
-  EXPECT_EQ(queue.peek(1)->content, 2U);
-  EXPECT_EQ(queue.peek(4), nullptr);
-}
 
 }  // namespace
 }  // namespace holdfast::sim
