@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <numeric>
+#include <utility>
 
 #include "holdfast/base/check.hpp"
 #include "region.hpp"
@@ -8,48 +10,69 @@
 /// Events that are handled ahead of their turn, and their turn.
 namespace holdfast::sim {
 
-void Region::run_ahead(const Window& window, std::int32_t begin, std::int32_t end) {
+std::uint64_t Region::give(const QueuedEvent& event) {
+  const auto effect = static_cast<std::uint32_t>(effects_.size());
+  given_.push_back({.time = event.time,
+                    .effect = effect,
+                    .module = static_cast<std::uint32_t>(Happening::module_of(event.content))});
+  effects_.push_back({.content = event.content});
+  return content_of(effect);
+}
+
+void Region::run_ahead(Time end) {
   is_ahead_ = true;
-  end_ = window.end;
-  for (std::int32_t module = begin; module < end; ++module) {
-    const std::uint32_t first = window.first[at(module)];
-    if (first != Window::kNone) {
-      run_module(window, first);
-    }
+  end_ = end;
+  sort_given();
+  for (std::size_t i = 0; i < sorted_.size();) {
+    i = run_module(i);
   }
   is_ahead_ = false;
 }
 
-/// Handles the events of a module, and those that it makes for itself meanwhile, which come behind
-/// others of the same time as in the queue.
-void Region::run_module(const Window& window, std::uint32_t first) {
-  std::uint32_t given = first;
+/// Puts the events of each module side by side, in their order.
+void Region::sort_given() {
+  places_.assign(module_count_ + 1, 0);
+  for (const Given& event : given_) {
+    ++places_[event.module - first_module_ + 1];
+  }
+  std::partial_sum(places_.begin(), places_.end(), places_.begin());
+  sorted_.resize(given_.size());
+  for (const Given& event : given_) {
+    sorted_[places_[event.module - first_module_]++] = event;
+  }
+  given_.clear();
+}
+
+/// Handles the events of a module, which begin at this place, and those that it makes for itself
+/// meanwhile, which come behind others of the same time as in the queue. Returns the next place.
+std::size_t Region::run_module(std::size_t given) {
+  constexpr std::size_t kAhead = 6;
+  const std::uint32_t module = sorted_[given].module;
   std::size_t own = 0;
   while (true) {
-    const bool has_given = given != Window::kNone;
-    if (own < own_.size() && (!has_given || own_[own].time < window.events[given].time)) {
-      const Own event = own_[own++];
-      begin_effect(event.time, event.effect);
-    } else if (has_given) {
-      QueuedEvent& event = window.events[given];
-      const auto effect = static_cast<std::uint32_t>(effects_.size());
-      effects_.push_back({.content = event.content});
-      event.content = content_of(effect);
-      given = window.next[given];
-      begin_effect(event.time, effect);
-    } else {
+    const bool has_given = given < sorted_.size() && sorted_[given].module == module;
+    const bool has_own = own < own_.size();
+    if (!has_given && !has_own) {
       break;
     }
+    const bool is_own = has_own && (!has_given || own_[own].time < sorted_[given].time);
+    const Given event = is_own ? own_[own++] : sorted_[given++];
+    if (!is_own && given + 2 * kAhead < sorted_.size()) {
+      __builtin_prefetch(&effects_[sorted_[given + 2 * kAhead].effect]);
+      prefetch(Happening::of(effects_[sorted_[given + kAhead].effect].content));
+    }
+    begin_effect(event);
     handle(Happening::of(effects_[effect_].content));
   }
   own_.clear();
+  return given;
 }
 
-void Region::begin_effect(Time time, std::uint32_t effect) {
-  now_ = time;
-  effect_ = effect;
-  effects_[effect].first_push = static_cast<std::uint32_t>(pushes_.size());
-  effects_[effect].first_change = static_cast<std::uint32_t>(changes_.size());
+void Region::begin_effect(const Given& event) {
+  now_ = event.time;
+  effect_ = event.effect;
+  effects_[effect_].first_push = static_cast<std::uint32_t>(pushes_.size());
+  effects_[effect_].first_change = static_cast<std::uint32_t>(changes_.size());
 }
 
 void Region::push_ahead(Time time, const Happening& what) {
@@ -62,7 +85,7 @@ void Region::push_ahead(Time time, const Happening& what) {
   const auto effect = static_cast<std::uint32_t>(effects_.size());
   effects_.push_back({.content = what.packed()});
   pushes_.push_back({time, content_of(effect)});
-  const auto place = std::ranges::upper_bound(own_, time, {}, &Own::time);
+  const auto place = std::ranges::upper_bound(own_, time, {}, &Given::time);
   own_.insert(place, {.time = time, .effect = effect});
 }
 
@@ -96,8 +119,22 @@ void Region::tell(std::span<Region* const> all, const QueuedEvent& event) {
   }
 }
 
-void Region::prefetch_turn(std::span<Region* const> all, std::uint64_t content) {
-  __builtin_prefetch(&all[content >> 32U]->effects_[content & 0xffffffffU]);
+void Region::prefetch_turn(std::span<Region* const> all, const QueuedEvent* later,
+                           const QueuedEvent* soon) {
+  const auto effect_of = [&](const QueuedEvent& event) {
+    return &all[event.content >> 32U]->effects_[event.content & 0xffffffffU];
+  };
+  if (later != nullptr) {
+    __builtin_prefetch(effect_of(*later));
+  }
+  if (soon != nullptr) {
+    const Effect& effect = *effect_of(*soon);
+    __builtin_prefetch(all[soon->content >> 32U]->pushes_.data() + effect.first_push);
+    const Happening what = Happening::of(effect.content);
+    if (what.kind == Kind::kDeliver) {
+      pool_of(all, what.item).prefetch(slot_of(what.item));
+    }
+  }
 }
 
 void Region::end_window() {

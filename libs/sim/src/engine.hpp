@@ -33,6 +33,8 @@ class Engine {
 
   bool takes_part(std::int32_t module) const { return modules_.ports[at(module)].takes_part(); }
 
+  std::uint64_t window_count() const { return window_count_; }
+
   std::int32_t agent_count() const { return modules_.count(); }
 
  private:
@@ -44,7 +46,7 @@ class Engine {
 
   Port& port(std::int32_t module) { return modules_.ports[at(module)]; }
 
-  Region& region(std::int32_t module) { return *regions_[at(module) / region_modules_]; }
+  Region& region(std::int32_t module) { return *regions_[at(module) >> region_bits_]; }
 
   // engine.cpp: the loop.
   bool is_at_rest(Time next) const;
@@ -78,12 +80,11 @@ class Engine {
 
   Modules modules_;
   Ledger ledger_;
-  std::size_t region_modules_ = 0;  ///< In each region, but the last one.
+  unsigned region_bits_ = 0;  ///< A region has two to this power modules, but the last one.
   std::vector<std::unique_ptr<Region>> region_store_;
   std::vector<Region*> regions_;
   std::unique_ptr<host::Team> team_;  ///< Not before a window is run ahead.
-  std::vector<std::uint32_t> first_;  ///< See Region::Window.
-  std::vector<std::uint32_t> next_;
+  std::uint64_t window_count_ = 0;    ///< Those that were run ahead.
   Time now_ = 0;
   Time break_at_ = agent::kNever;  ///< Of the last thing that nobody was told of.
   bool is_booted_ = false;

@@ -38,7 +38,8 @@ void Region::offer_line(std::int32_t module, int face) {
 
 /// Sends a packet; returns false if there was nothing to send after all.
 bool Region::send_one(std::int32_t module, int face) {
-  step_event_ = event_of(agent::EventKind::kLineFree, static_cast<base::Direction>(face));
+  step_event_.kind = agent::EventKind::kLineFree;  // Nobody reads the rest of it.
+  step_event_.face = static_cast<base::Direction>(face);
   step(module);
   int size = actions_.packet_bytes;
   if (size > 0 && modules_.options.tamper) {

@@ -5,10 +5,10 @@
 #include <array>
 #include <vector>
 
-#include "environment_map.hpp"
 #include "holdfast/sim/simulation.hpp"
 #include "noise.hpp"
 #include "port.hpp"
+#include "world/environment_map.hpp"
 
 namespace holdfast::sim {
 

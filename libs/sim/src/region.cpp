@@ -98,7 +98,8 @@ void Region::serve(const Happening& what) {
       ledger_.recorder.chained(here.rounds);
     }
     // The view stays valid: the slot is not used again before the step is over.
-    step_event_ = event_of(EventKind::kReceive, what.face);
+    step_event_.kind = EventKind::kReceive;
+    step_event_.face = what.face;
     step_event_.bytes = std::as_const(pool).bytes(slot);
     step(what.module);
     if (!is_ahead_) {

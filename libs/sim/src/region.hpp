@@ -24,24 +24,16 @@ class Region {
   /// The most regions: a packet is known by region and slot, in 32 bits.
   static constexpr std::size_t kCountMax = 64;
 
-  /// Events of a window, the first one of each module, and behind each event that module's next
-  /// one, or kNone; at `end` the window ends.
-  struct Window {
-    static constexpr std::uint32_t kNone = ~std::uint32_t{0};
-
-    std::span<QueuedEvent> events;
-    std::span<const std::uint32_t> first;
-    std::span<const std::uint32_t> next;
-    Time end = 0;
-  };
-
-  /// `all` are the regions of the robot by their number, of which this one is `number`.
-  Region(Modules& modules, Ledger& ledger, std::span<Region* const> all, std::uint32_t number)
+  /// `all` are the regions of the robot by their number, of which this one is `number`. It has
+  /// `module_count` modules from the first one on.
+  Region(Modules& modules, Ledger& ledger, std::span<Region* const> all, std::uint32_t number,
+         std::size_t first_module, std::size_t module_count)
       : modules_(modules),
         ledger_(ledger),
         all_(all),
         number_(number),
-        pool_(modules.options.link.packet_bytes) {}
+        first_module_(first_module),
+        module_count_(module_count) {}
 
   // region.cpp: events, steps, timers, computing.
 
@@ -54,14 +46,19 @@ class Region {
 
   // ahead.cpp: ahead of their turn.
 
-  /// Handles the events of the modules [begin, end). They get contents by which their turn is
-  /// known.
-  void run_ahead(const Window& window, std::int32_t begin, std::int32_t end);
+  /// Takes an event of the window, by ascending time; returns a content by which its turn is known.
+  std::uint64_t give(const QueuedEvent& event);
+
+  /// Handles all events that were given, of a window that ends at this time.
+  void run_ahead(Time end);
 
   /// The turn of an event with such a content has come. The ledger's recorder counts packets that
   /// were sent when all have been told.
   static void tell(std::span<Region* const> all, const QueuedEvent& event);
-  static void prefetch_turn(std::span<Region* const> all, std::uint64_t content);
+
+  /// Events, if any, whose turn comes later, and soon.
+  static void prefetch_turn(std::span<Region* const> all, const QueuedEvent* later,
+                            const QueuedEvent* soon);
 
   /// All of them have had their turn.
   void end_window();
@@ -86,16 +83,17 @@ class Region {
     bool is_lost = false;  ///< A packet that reached nobody.
   };
 
-  /// An event that a module makes for itself within the window.
-  struct Own {
+  /// An event of a module ahead of its turn.
+  struct Given {
     Time time = 0;
     std::uint32_t effect = 0;
+    std::uint32_t module = 0;
   };
 
   /// A burst on an unlimited line: more than a link's window, so that it never matters.
   static constexpr int kBurstMax = 64;
   static constexpr int kSlotBits = 26;
-  static_assert(PacketPool::kSlotCountMax == 1U << kSlotBits);
+  static_assert(PacketPool::kPlaceMax == 1U << kSlotBits);
   static_assert(kCountMax << kSlotBits == std::size_t{1} << 32U);
 
   static std::size_t at(std::int32_t module) { return Modules::at(module); }
@@ -148,8 +146,9 @@ class Region {
 
   // ahead.cpp
   void push_ahead(Time time, const Happening& what);
-  void run_module(const Window& window, std::uint32_t first);
-  void begin_effect(Time time, std::uint32_t effect);
+  void sort_given();
+  std::size_t run_module(std::size_t given);
+  void begin_effect(const Given& event);
 
   std::uint64_t content_of(std::size_t effect) const {
     return std::uint64_t{number_} << 32U | effect;
@@ -159,6 +158,8 @@ class Region {
   Ledger& ledger_;
   std::span<Region* const> all_;
   std::uint32_t number_;
+  std::size_t first_module_;
+  std::size_t module_count_;
   Time now_ = 0;
   agent::Event step_event_{};  ///< One of each for all steps; they are not small.
   agent::Actions actions_{};
@@ -173,7 +174,10 @@ class Region {
   std::vector<Effect> effects_;
   std::vector<QueuedEvent> pushes_;
   std::vector<Change> changes_;
-  std::vector<Own> own_;  ///< Of the module, by time.
+  std::vector<Given> given_;
+  std::vector<Given> sorted_;          ///< By module, then by time.
+  std::vector<std::uint32_t> places_;  ///< Of each module, in them.
+  std::vector<Given> own_;             ///< What the module makes for itself, by time.
   Recorder packets_{nullptr};
   std::ptrdiff_t wakeful_change_ = 0;
 };

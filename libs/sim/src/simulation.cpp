@@ -7,9 +7,9 @@
 #include <algorithm>
 
 #include "engine.hpp"
-#include "environment_map.hpp"
 #include "holdfast/agent/cells/feet.hpp"
 #include "holdfast/base/check.hpp"
+#include "world/environment_map.hpp"
 
 namespace holdfast::sim {
 namespace {
@@ -215,6 +215,8 @@ void Simulation::happen(const Fault& fault) { engine_->happen(fault); }
 void Simulation::happen(const Announcement& announcement) { engine_->happen(announcement); }
 
 SimulationResult Simulation::result() const { return engine_->result(); }
+
+std::uint64_t Simulation::window_count() const { return engine_->window_count(); }
 
 SimulationResult Simulation::counts() const { return engine_->counts(); }
 

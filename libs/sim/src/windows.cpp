@@ -16,14 +16,18 @@ constexpr std::uint64_t kStepsMax = 1000;
 /// Regions are made of modules that follow each other in the robot, which mostly lie near each
 /// other, too.
 void Engine::make_regions() {
-  constexpr std::size_t kModulesMin = 64;
+  constexpr unsigned kBitsMin = 3;
   const std::size_t count = modules_.agents.size();
-  region_modules_ = std::max(kModulesMin, (count + Region::kCountMax - 1) / Region::kCountMax);
-  const std::size_t region_count = (count + region_modules_ - 1) / region_modules_;
-  regions_.resize(region_count);
-  for (std::size_t i = 0; i < region_count; ++i) {
-    region_store_.push_back(
-        std::make_unique<Region>(modules_, ledger_, regions_, static_cast<std::uint32_t>(i)));
+  region_bits_ = kBitsMin;
+  while (Region::kCountMax << region_bits_ < count) {
+    ++region_bits_;
+  }
+  const std::size_t size = std::size_t{1} << region_bits_;
+  regions_.resize((count + size - 1) / size);
+  for (std::size_t i = 0; i < regions_.size(); ++i) {
+    region_store_.push_back(std::make_unique<Region>(modules_, ledger_, regions_,
+                                                     static_cast<std::uint32_t>(i), i * size,
+                                                     std::min(size, count - i * size)));
     regions_[i] = region_store_[i].get();
   }
 }
@@ -44,30 +48,21 @@ bool Engine::can_run_ahead() {
 }
 
 void Engine::run_ahead() {
-  constexpr std::size_t kPrefetch = 8;
+  constexpr std::size_t kLater = 16;
+  constexpr std::size_t kSoon = 8;
   if (team_ == nullptr) {
-    team_ = std::make_unique<host::Team>(modules_.options.thread_count, modules_.agents.size());
+    const int wanted = modules_.options.thread_count;
+    team_ = wanted == 0 ? std::make_unique<host::Team>(0, modules_.agents.size())
+                        : std::make_unique<host::Team>(wanted);
   }
-  const std::span<QueuedEvent> events = ledger_.take_window();
-  first_.assign(modules_.agents.size(), Region::Window::kNone);
-  next_.resize(events.size());
-  for (std::size_t i = events.size(); i-- > 0;) {
-    const std::size_t module = at(Happening::module_of(events[i].content));
-    next_[i] = first_[module];
-    first_[module] = static_cast<std::uint32_t>(i);
+  ++window_count_;
+  Agenda& agenda = ledger_.agenda();
+  for (QueuedEvent& event : ledger_.take_window()) {
+    event.content = region(Happening::module_of(event.content)).give(event);
   }
-  const Region::Window window{
-      .events = events, .first = first_, .next = next_, .end = ledger_.agenda().end()};
-  team_->each(regions_.size(), [&](std::size_t i) {
-    const std::size_t begin = i * region_modules_;
-    const std::size_t end = std::min(begin + region_modules_, modules_.agents.size());
-    regions_[i]->run_ahead(window, static_cast<std::int32_t>(begin),
-                           static_cast<std::int32_t>(end));
-  });
-  while (ledger_.agenda().has_window()) {
-    if (const QueuedEvent* ahead = ledger_.agenda().peek(kPrefetch); ahead != nullptr) {
-      Region::prefetch_turn(regions_, ahead->content);
-    }
+  team_->each(regions_.size(), [&](std::size_t i) { regions_[i]->run_ahead(agenda.end()); });
+  while (agenda.has_window()) {
+    Region::prefetch_turn(regions_, agenda.peek(kLater), agenda.peek(kSoon));
     const QueuedEvent event = ledger_.pop_taken();
     now_ = event.time;
     Region::tell(regions_, event);

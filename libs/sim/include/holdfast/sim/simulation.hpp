@@ -112,6 +112,9 @@ class Simulation {
   /// The result so far without what modules say: answer, agreement, root, and the busiest one.
   SimulationResult counts() const;
 
+  /// How often modules have handled events in groups (SimulationOptions::window_events_min).
+  std::uint64_t window_count() const;
+
   /// The agent of an existing module.
   const agent::Agent& agent(std::int32_t module) const;
 
