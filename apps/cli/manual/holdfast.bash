@@ -197,7 +197,8 @@ _holdfast() {
         --size) : ;;
         --title) : ;;
         --view) words="iso front side top" ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --steps --stages --next --weaken --json --connections --trace --story --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
+        --threads) : ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --steps --stages --next --weaken --json --connections --trace --story --svg --size --title --grey --view --no-legend --threads -q --quiet"; else files=1; fi ;;
       esac
       ;;
     emulate)

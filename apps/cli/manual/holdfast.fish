@@ -225,6 +225,7 @@ complete -c holdfast -n '__fish_seen_subcommand_from simulate' -l title -x -d 'T
 complete -c holdfast -n '__fish_seen_subcommand_from simulate' -l grey -d 'Draw without colours; the darker the more load'
 complete -c holdfast -n '__fish_seen_subcommand_from simulate' -l view -x -a 'iso front side top' -d 'Look from there: iso, front, side, top, or the azimuth and elevation of the eye, in degrees [default: iso]'
 complete -c holdfast -n '__fish_seen_subcommand_from simulate' -l no-legend -d 'Leave out the legend'
+complete -c holdfast -n '__fish_seen_subcommand_from simulate' -l threads -x -d 'Threads; 0: as many as the machine has cores. The answer does not depend on it'
 complete -c holdfast -n '__fish_seen_subcommand_from simulate' -s q -l quiet -d 'Print errors only; the exit code is the answer'
 complete -c holdfast -n __fish_use_subcommand -a emulate -d 'Let the robot work out its own verdict as firmware, one emulated microcontroller for every module'
 complete -c holdfast -n '__fish_seen_subcommand_from emulate' -s h -l help -d 'Print this help message and exit'

@@ -48,6 +48,7 @@ struct SimulateArguments {
   bool takes_steps = false;
   bool judges_stages = false;
   bool asks_next = false;
+  int thread_count = 0;
   bool is_quiet = false;
 
   /// The files to be written, each with its option.
@@ -111,6 +112,7 @@ class SimulateRun {
     simulation_.link = *link;
     simulation_.method = method;
     simulation_.seed = options_.seed;
+    simulation_.thread_count = options_.thread_count;
     add_noise();
     refuse_clashes({&options_.file, 1}, options_.outputs());
     note_idle_connections(options_.connections, {options_.json});
@@ -300,7 +302,7 @@ class SimulateRun {
     }
     simulation_.trace = perfetto.trace ? static_cast<sim::TraceSink*>(perfetto.trace.get())
                                        : static_cast<sim::TraceSink*>(story.trace.get());
-    const CheckResult exact = check(structure);
+    const CheckResult exact = check(structure, {.thread_count = options_.thread_count});
     const auto run =
         simulate(structure, exact, simulation_, [this](const sim::SimulationResult& result) {
           show_progress(result);
@@ -404,6 +406,7 @@ Command add_simulate(CLI::App& app) {
   add_output(*command, "--story", options->story,
              "Write what happens, in words; - is standard output");
   add_figure(*command, options->figure, "Draw the robot in the colours that it shows");
+  add_threads(*command, options->thread_count);
   add_quiet(*command, options->is_quiet);
   return {command,
           [options] { return SimulateRun(*options).run(); },

@@ -279,7 +279,7 @@ base::Result<DistributedRun> simulate(const model::Robot& robot, const CheckResu
   }
   sim::Simulation simulation(robot, options);
   while (simulation.run_for(kSliceEvents)) {
-    if (progress && !progress(simulation.result())) {
+    if (progress && !progress(simulation.counts())) {
       break;
     }
   }

@@ -82,8 +82,9 @@ void EventQueue::move_down(int level, std::size_t slot) {
   }
 }
 
-/// Moves the position to the first event. All events of a level come before those of the next.
-void EventQueue::settle() {
+/// Moves the position to the first event, if its time is before `end` or `end` is 0. All events of
+/// a level come before those of the next.
+bool EventQueue::settle(std::uint64_t end) {
   HOLDFAST_ASSERT(size_ > 0);
   int level = 0;
   while (true) {
@@ -97,9 +98,13 @@ void EventQueue::settle() {
     const int shift = level * kDigitBits;
     const std::uint64_t below = (std::uint64_t{kSlotCount} << shift) - 1;
     // On the highest level the shift leaves nothing: `below` is then all ones, as it should be.
-    position_ = (position_ & ~below) | (static_cast<std::uint64_t>(slot) << shift);
+    const std::uint64_t begin = (position_ & ~below) | (static_cast<std::uint64_t>(slot) << shift);
+    if (end != 0 && begin >= end) {
+      return false;
+    }
+    position_ = begin;
     if (level == 0) {
-      return;
+      return true;
     }
     move_down(level, static_cast<std::size_t>(slot));
     level = 0;
@@ -108,13 +113,28 @@ void EventQueue::settle() {
 
 std::uint64_t EventQueue::next_time() {
   if (levels_[0].slots[digit(0)].first == nullptr) {
-    settle();
+    settle(0);
   }
   return position_;
 }
 
 QueuedEvent EventQueue::pop() {
-  const std::size_t at = (next_time(), digit(0));
+  next_time();
+  return take_first();
+}
+
+bool EventQueue::pop_before(std::uint64_t end, QueuedEvent& event) {
+  if (size_ == 0 || (levels_[0].slots[digit(0)].first == nullptr && !settle(end)) ||
+      position_ >= end) {
+    return false;
+  }
+  event = take_first();
+  return true;
+}
+
+/// Removes the first event at the position.
+QueuedEvent EventQueue::take_first() {
+  const std::size_t at = digit(0);
   Slot& slot = levels_[0].slots[at];
   Chunk* chunk = slot.first;
   const QueuedEvent event = chunk->events[chunk->begin++];
@@ -127,14 +147,6 @@ QueuedEvent EventQueue::pop() {
   }
   --size_;
   return event;
-}
-
-const QueuedEvent* EventQueue::peek(std::uint32_t ahead) const {
-  const Chunk* chunk = levels_[0].slots[digit(0)].first;
-  if (chunk == nullptr || chunk->begin + ahead >= chunk->end) {
-    return nullptr;
-  }
-  return &chunk->events[chunk->begin + ahead];
 }
 
 }  // namespace holdfast::sim

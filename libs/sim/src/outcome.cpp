@@ -42,10 +42,10 @@ SimulationResult Outcome::result() const {
 }
 
 SimulationResult Engine::result() const {
-  Outcome outcome(recorder_.result());
-  for (std::size_t i = 0; i < agents_.size(); ++i) {
-    const Port& port = ports_[i];
-    outcome.add(static_cast<std::int32_t>(i), {.agent = agents_[i],
+  Outcome outcome(ledger_.recorder.result());
+  for (std::size_t i = 0; i < modules_.agents.size(); ++i) {
+    const Port& port = modules_.ports[i];
+    outcome.add(static_cast<std::int32_t>(i), {.agent = modules_.agents[i],
                                                .takes_part = port.takes_part(),
                                                .packets_sent = port.packets_sent,
                                                .bytes_sent = port.bytes_sent});
@@ -55,13 +55,15 @@ SimulationResult Engine::result() const {
   return result;
 }
 
+SimulationResult Engine::counts() const { return ledger_.recorder.result(); }
+
 void Engine::finish() {
   if (is_over_) {
     return;
   }
   is_over_ = true;
-  if (recorder_.trace() != nullptr) {
-    recorder_.trace()->end(result());
+  if (ledger_.recorder.trace() != nullptr) {
+    ledger_.recorder.trace()->end(result());
   }
 }
 

@@ -2,10 +2,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "holdfast/sim/recorder.hpp"
 
+#include <array>
+
 namespace holdfast::sim {
 namespace {
 
 constexpr std::uint64_t kHashPrime = 0x100000001b3U;
+
+/// Powers of the prime.
+constexpr std::array<std::uint64_t, 9> kHashPowers = [] {
+  std::array<std::uint64_t, 9> powers{1};
+  for (std::size_t i = 1; i < powers.size(); ++i) {
+    powers[i] = powers[i - 1] * kHashPrime;
+  }
+  return powers;
+}();
 
 std::size_t index(agent::Phase phase) { return static_cast<std::size_t>(phase); }
 
@@ -33,15 +44,20 @@ void Recorder::sent(const PacketTrace& packet, agent::Phase phase, Time line_tim
 }
 
 void Recorder::delivered(const PacketTrace& packet) {
-  hash(packet.time, 8);
-  hash(static_cast<std::uint64_t>(packet.to), 4);
-  hash(static_cast<std::uint64_t>(base::opposite(packet.face)), 1);
-  hash(static_cast<std::uint64_t>(agent::EventKind::kReceive), 1);
-  for (const std::uint8_t byte : packet.bytes) {
-    hash_ = (hash_ ^ byte) * kHashPrime;
-  }
+  received(packet.time, packet.to, base::opposite(packet.face), packet.bytes);
   if (trace_ != nullptr) {
     trace_->packet_delivered(packet);
+  }
+}
+
+void Recorder::received(Time time, std::int32_t to, base::Direction face,
+                        std::span<const std::uint8_t> packet) {
+  hash(time, 8);
+  hash(static_cast<std::uint64_t>(to), 4);
+  hash(static_cast<std::uint64_t>(face), 1);
+  hash(static_cast<std::uint64_t>(agent::EventKind::kReceive), 1);
+  for (const std::uint8_t byte : packet) {
+    hash_ = (hash_ ^ byte) * kHashPrime;
   }
 }
 
@@ -52,25 +68,49 @@ void Recorder::lost(const PacketTrace& packet) {
   }
 }
 
+void Recorder::take_packets(Recorder& other) {
+  SimulationResult& from = other.result_;
+  result_.packets += from.packets;
+  result_.bytes += from.bytes;
+  result_.data_packets += from.data_packets;
+  result_.payload_bytes += from.payload_bytes;
+  result_.lost_packets += from.lost_packets;
+  for (std::size_t i = 0; i < kPhaseCount; ++i) {
+    result_.phases[i].packets += from.phases[i].packets;
+    result_.phases[i].bytes += from.phases[i].bytes;
+  }
+  from = {};
+}
+
 void Recorder::note_change(Time now, std::int32_t module, const agent::Agent& agent, Seen& seen) {
-  if (agent.epoch() != seen.epoch && trace_ != nullptr) {
-    trace_->joined(now, module, agent.epoch());
-  }
-  if (agent.phase() != seen.phase && trace_ != nullptr) {
-    trace_->phase_changed(now, module, agent.phase());
-  }
-  if (agent.answer().verdict != seen.verdict) {
-    if (agent.answer().verdict != agent::Verdict::kNone) {
-      result_.verdict_time = now;
+  const Change change = take_change(agent, seen);
+  if (trace_ != nullptr) {
+    if (change.after.epoch != change.before.epoch) {
+      trace_->joined(now, module, change.after.epoch);
     }
-    if (trace_ != nullptr) {
+    if (change.after.phase != change.before.phase) {
+      trace_->phase_changed(now, module, change.after.phase);
+    }
+    if (change.after.verdict != change.before.verdict) {
       trace_->verdict_known(now, module, agent.answer());
     }
   }
-  const bool has_moved = agent.epoch() != seen.epoch || agent.phase() != seen.phase;
+  changed(now, change);
+}
+
+Change Recorder::take_change(const agent::Agent& agent, Seen& seen) {
+  const Seen before = seen;
   seen = {.epoch = agent.epoch(), .phase = agent.phase(), .verdict = agent.answer().verdict};
-  if (has_moved) {
-    reached(now, seen.epoch, seen.phase, agent.is_root());
+  return {.before = before, .after = seen, .is_root = agent.is_root()};
+}
+
+void Recorder::changed(Time now, const Change& change) {
+  const auto& [before, after, is_root] = change;
+  if (after.verdict != before.verdict && after.verdict != agent::Verdict::kNone) {
+    result_.verdict_time = now;
+  }
+  if (after.epoch != before.epoch || after.phase != before.phase) {
+    reached(now, after.epoch, after.phase, is_root);
   }
 }
 
@@ -104,11 +144,13 @@ void Recorder::leave_phase(Time time, SimulationResult& result) const {
   statistics.rounds += result.rounds - phase_rounds_;
 }
 
+/// The lowest bytes of a value. Those that are 0 only multiply.
 void Recorder::hash(std::uint64_t value, int bytes) {
-  for (int i = 0; i < bytes; ++i) {
+  for (; value != 0 && bytes > 0; --bytes) {
     hash_ = (hash_ ^ (value & 0xffU)) * kHashPrime;
     value >>= 8U;
   }
+  hash_ *= kHashPowers[static_cast<std::size_t>(bytes)];
 }
 
 }  // namespace holdfast::sim

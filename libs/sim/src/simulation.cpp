@@ -7,9 +7,9 @@
 #include <algorithm>
 
 #include "engine.hpp"
-#include "environment_map.hpp"
 #include "holdfast/agent/cells/feet.hpp"
 #include "holdfast/base/check.hpp"
+#include "world/environment_map.hpp"
 
 namespace holdfast::sim {
 namespace {
@@ -216,9 +216,13 @@ void Simulation::happen(const Announcement& announcement) { engine_->happen(anno
 
 SimulationResult Simulation::result() const { return engine_->result(); }
 
+std::uint64_t Simulation::window_count() const { return engine_->window_count(); }
+
+SimulationResult Simulation::counts() const { return engine_->counts(); }
+
 const agent::Agent& Simulation::agent(std::int32_t module) const { return engine_->agent(module); }
 
-bool Simulation::is_alive(std::int32_t module) const { return engine_->port(module).takes_part(); }
+bool Simulation::is_alive(std::int32_t module) const { return engine_->takes_part(module); }
 
 std::int32_t Simulation::agent_count() const { return engine_->agent_count(); }
 

@@ -62,15 +62,31 @@ TEST(EventQueue, takes_events_for_the_present_tick_and_for_the_end_of_time) {
   EXPECT_TRUE(queue.is_empty());
 }
 
-TEST(EventQueue, shows_what_comes_next_at_the_same_time) {
-  EventQueue queue;
-  for (std::uint64_t i = 0; i < 5; ++i) {
-    queue.push(3, i);
+TEST(EventQueue, gives_no_event_from_a_limit_on_and_takes_earlier_ones_afterwards) {
+  base::Rng rng(8);
+  for (int scale = 0; scale < 60; scale += 4) {
+    EventQueue queue;
+    Heap heap;
+    std::uint64_t sequence = 0;
+    std::uint64_t end = 1;
+    for (int step = 0; step < 500; ++step) {
+      for (std::uint64_t i = rng.below(4); i > 0; --i) {
+        // From the limit on, which may be long before the next event that is left.
+        const std::uint64_t time = end + rng.below(std::uint64_t{1} << rng.below(scale + 1U));
+        heap.push({time, sequence});
+        queue.push(time, sequence++);
+      }
+      end += rng.below(std::uint64_t{1} << rng.below(scale + 1U));
+      QueuedEvent event{};
+      while (queue.pop_before(end, event)) {
+        ASSERT_EQ((Keyed{event.time, event.content}), heap.top());
+        ASSERT_LT(event.time, end);
+        heap.pop();
+      }
+      ASSERT_TRUE(heap.empty() || heap.top().first >= end);
+    }
+    EXPECT_GT(sequence, 100U);
   }
-  EXPECT_EQ(queue.pop().content, 0U);
-  ASSERT_NE(queue.peek(1), nullptr);
-  EXPECT_EQ(queue.peek(1)->content, 2U);
-  EXPECT_EQ(queue.peek(4), nullptr);
 }
 
 }  // namespace

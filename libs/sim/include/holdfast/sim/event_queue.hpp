@@ -40,9 +40,9 @@ class EventQueue {
   /// Removes the first event; the queue must not be empty.
   QueuedEvent pop();
 
-  /// The event `ahead` places behind the one that pop() gave last, if it happens at the same time
-  /// and lies nearby, else null. For prefetching.
-  const QueuedEvent* peek(std::uint32_t ahead) const;
+  /// Removes the first event if its time is before `end`, which is 1 at least; returns false if
+  /// there is none. Events may still be pushed with times from `end` on.
+  bool pop_before(std::uint64_t end, QueuedEvent& event);
 
  private:
   static constexpr int kDigitBits = 8;
@@ -73,7 +73,8 @@ class EventQueue {
   int find_used(int level, std::size_t from) const;
   void place(const QueuedEvent& event);
   void move_down(int level, std::size_t slot);
-  void settle();
+  bool settle(std::uint64_t end);
+  QueuedEvent take_first();
   Chunk* take_chunk();
   void free_chunk(Chunk* chunk);
 

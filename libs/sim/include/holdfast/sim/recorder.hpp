@@ -22,6 +22,13 @@ struct Seen {
   agent::Verdict verdict = agent::Verdict::kNone;
 };
 
+/// What a step has changed of that.
+struct Change {
+  Seen before;
+  Seen after;
+  bool is_root = false;  ///< Afterwards.
+};
+
 class Recorder {
  public:
   /// `trace` may be null.
@@ -31,25 +38,41 @@ class Recorder {
 
   void sent(const PacketTrace& packet, agent::Phase phase, Time line_time);
   void delivered(const PacketTrace& packet);
+  /// A packet is delivered that nobody traces: at this time, to this module, at this face of it.
+  void received(Time time, std::int32_t to, base::Direction face,
+                std::span<const std::uint8_t> packet);
   void lost(const PacketTrace& packet);
+
+  /// Adds the packets that another recorder has counted as sent and lost, and lets it begin anew.
+  void take_packets(Recorder& other);
 
   /// Notes what has changed in an agent since it was `seen` last, after its every step.
   void observe(Time now, std::int32_t module, const agent::Agent& agent, Seen& seen) {
-    if (agent.epoch() != seen.epoch || agent.phase() != seen.phase ||
-        agent.answer().verdict != seen.verdict) {
+    if (has_changed(agent, seen)) {
       note_change(now, module, agent, seen);
     }
   }
+
+  static bool has_changed(const agent::Agent& agent, const Seen& seen) {
+    return agent.epoch() != seen.epoch || agent.phase() != seen.phase ||
+           agent.answer().verdict != seen.verdict;
+  }
+
+  /// Brings what was seen of an agent up to date.
+  static Change take_change(const agent::Agent& agent, Seen& seen);
+
+  /// Notes a change that nobody traces.
+  void changed(Time now, const Change& change);
 
   /// A chain of so many packets has come to an end.
   void chained(std::uint64_t rounds) {
     result_.rounds = rounds > result_.rounds ? rounds : result_.rounds;
   }
 
-  /// A module has handled an event.
-  void handled(Time time) {
-    result_.time = time;
-    ++result_.events;
+  /// A module has handled an event, or several.
+  void handled(Time time, std::uint64_t count = 1) {
+    result_.time = count > 0 ? time : result_.time;
+    result_.events += count;
   }
 
   Time verdict_time() const { return result_.verdict_time; }

@@ -59,7 +59,11 @@ struct SimulationOptions {
   std::int32_t anchor = 0;  ///< The module that knows its cell.
   /// The module that is told of the robot's planned modules, and of the step, before it starts.
   std::int32_t plan_module = 0;
-  bool tells_planned = true;   ///< False: nobody is told of them but by `announcements`.
+  bool tells_planned = true;  ///< False: nobody is told of them but by `announcements`.
+  int thread_count = 0;       ///< Of the simulation; 0: as many as the machine has cores.
+  /// Modules handle events in groups, and threads share them, where so many are near; fewer are
+  /// handled one by one. The result is the same.
+  std::size_t window_events_min = 1000;
   TraceSink* trace = nullptr;  ///< Not owned; outlives the simulation.
   Tamper tamper = {};          ///< Called for every packet, if there is one: faulty modules.
 };
@@ -104,6 +108,12 @@ class Simulation {
 
   /// The result so far.
   SimulationResult result() const;
+
+  /// The result so far without what modules say: answer, agreement, root, and the busiest one.
+  SimulationResult counts() const;
+
+  /// How often modules have handled events in groups (SimulationOptions::window_events_min).
+  std::uint64_t window_count() const;
 
   /// The agent of an existing module.
   const agent::Agent& agent(std::int32_t module) const;
