@@ -121,8 +121,7 @@ struct Answers {
 
 Answers answers(const model::RobotSpec& spec, bool is_whole) {
   const CheckResult result = check(
-      make(spec),
-      {.thread_count = 1, .is_buckling_wanted = is_whole, .is_limit_wanted = is_whole});
+      make(spec), {.thread_count = 1, .is_buckling_wanted = is_whole, .is_limit_wanted = is_whole});
   return {result.assessment, result.limit};
 }
 
