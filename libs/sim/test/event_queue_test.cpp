@@ -64,7 +64,7 @@ TEST(EventQueue, takes_events_for_the_present_tick_and_for_the_end_of_time) {
 
 TEST(EventQueue, gives_no_event_from_a_limit_on_and_takes_earlier_ones_afterwards) {
   base::Rng rng(8);
-  for (int scale = 0; scale < 60; scale += 4) {
+  for (unsigned scale = 1; scale < 61; scale += 4) {
     EventQueue queue;
     Heap heap;
     std::uint64_t sequence = 0;
@@ -72,11 +72,11 @@ TEST(EventQueue, gives_no_event_from_a_limit_on_and_takes_earlier_ones_afterward
     for (int step = 0; step < 500; ++step) {
       for (std::uint64_t i = rng.below(4); i > 0; --i) {
         // From the limit on, which may be long before the next event that is left.
-        const std::uint64_t time = end + rng.below(std::uint64_t{1} << rng.below(scale + 1U));
+        const std::uint64_t time = end + rng.below(std::uint64_t{1} << rng.below(scale));
         heap.push({time, sequence});
         queue.push(time, sequence++);
       }
-      end += rng.below(std::uint64_t{1} << rng.below(scale + 1U));
+      end += rng.below(std::uint64_t{1} << rng.below(scale));
       QueuedEvent event{};
       while (queue.pop_before(end, event)) {
         ASSERT_EQ((Keyed{event.time, event.content}), heap.top());
