@@ -192,8 +192,8 @@ TEST(MoveProperty, plans_keep_modules_and_avoid_cells_as_by_brute_force) {
     barred_count += heeded.value().outcome == MoveOutcome::kNone &&
                     brute_force::shortest(open, start, target).has_value();
   }
-  EXPECT_GT(tally.found, static_cast<int>(case_count) / 8);
-  EXPECT_GT(barred_count, static_cast<int>(case_count) / 40);
+  EXPECT_GE(tally.found, holdfast::test::least(21, 10));
+  EXPECT_GE(barred_count, holdfast::test::least(5, 10));
 }
 
 TEST(MoveProperty, modules_that_are_to_be_kept_or_cells_avoided_must_be_so_at_both_ends) {

@@ -98,7 +98,7 @@ std::optional<base::Error> find_body_fault(const model::Robot& target, const Ele
   for (const auto& [body, modules] : target.modules_by_body()) {
     const auto is_there = [&](Element module) { return start.contains(module); };
     const auto there = std::ranges::find_if(modules, is_there);
-    const auto missing = std::ranges::find_if_not(modules, is_there);
+    const auto missing = std::find_if_not(modules.begin(), modules.end(), is_there);
     if (there != modules.end() && missing != modules.end()) {
       const auto cell = [&](Element module) { return target.modules()[base::at(module)].cell; };
       return bad_start(
