@@ -116,7 +116,7 @@ def order(target: Union[Robot, Path], *, start: Optional[Cells] = None,
     start
         Cells of the modules that are there at first; else the fixed modules, or one that the search
         chooses.
-    continue_, at
+    `continue_`, at
         A plan to go on with, as of `Order.robot`, or a file: its last steps are kept as far as they
         are safe (`Order.kept_count`). `at` of its steps are done, and `target` is the robot that it
         was made for; without `at` `target` is the robot as it is now.
