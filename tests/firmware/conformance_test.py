@@ -130,7 +130,11 @@ def main():
         for spoil, failing in [(drops_hello, 'says hello bytes'),
                                (spoils_escapes, 'escapes marks both ways'),
                                (swaps_sums, 'greets whoever says hello')]:
-            code, report = at_process(holdfast, module, page, '--section', 'line', spoil=spoil)
+            # A number that the module draws may need an escape: then it cannot even greet. It draws another one.
+            for _ in range(5):
+                code, report = at_process(holdfast, module, page, '--section', 'line', spoil=spoil)
+                if code != 65 or spoil != spoils_escapes:
+                    break
             if code == 65:
                 expect(failing == 'greets whoever says hello', f'{spoil.__name__}: nobody greets')
                 continue

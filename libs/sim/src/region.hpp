@@ -94,7 +94,7 @@ class Region {
   static constexpr int kBurstMax = 64;
   static constexpr int kSlotBits = 26;
   static_assert(PacketPool::kPlaceMax == 1U << kSlotBits);
-  static_assert(kCountMax << kSlotBits == std::size_t{1} << 32U);
+  static_assert(std::uint64_t{kCountMax} << kSlotBits == std::uint64_t{1} << 32U);
 
   static std::size_t at(std::int32_t module) { return Modules::at(module); }
 
