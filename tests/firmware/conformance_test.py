@@ -130,7 +130,7 @@ def main():
         for spoil, failing in [(drops_hello, 'says hello bytes'),
                                (spoils_escapes, 'escapes marks both ways'),
                                (swaps_sums, 'greets whoever says hello')]:
-            # A number that the module draws may need an escape: then it cannot even greet. It draws another one.
+            # A number that the module draws may need an escape: then it cannot even greet.
             for _ in range(5):
                 code, report = at_process(holdfast, module, page, '--section', 'line', spoil=spoil)
                 if code != 65 or spoil != spoils_escapes:

@@ -103,7 +103,8 @@ def check_sizes(documents, images, v2, v1):
                      f'{text + data:,} | {data + bss:,}')
     text, data, bss = sizes_of('avr-size', images / 'avr/module_atxmega256a3.elf')
     documents.expect('docs/firmware.md',
-                     r'bits: ([\d,]+ bytes of flash of [\d,]+, [\d,]+ of RAM) \(`module_atxmega256a3.elf`\)',
+                     r'bits: ([\d,]+ bytes of flash of [\d,]+, [\d,]+ of RAM) '
+                     r'\(`module_atxmega256a3.elf`\)',
                      f'{text + data:,} bytes of flash of 262,144, {data + bss:,} of RAM')
 
 
