@@ -221,7 +221,7 @@ std::vector<plan::CellBox> boxes_of(const py::handle& given, const char* what) {
   std::vector<plan::CellBox> boxes;
   for (const base::Cell& cell :
        given.is_none() ? std::vector<base::Cell>() : cells_of(given, what)) {
-    boxes.push_back({.low = cell, .high = cell});
+    boxes.push_back(plan::box_between(cell, cell));
   }
   return boxes;
 }
@@ -375,9 +375,7 @@ std::optional<plan::CellBox> box_of(const py::handle& given) {
   if (corners.size() != 2) {
     throw Error("within: expected two cells, the corners of a box");
   }
-  const auto [a, b] = std::pair(corners[0], corners[1]);
-  return plan::CellBox{.low = {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
-                       .high = {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}};
+  return plan::box_between(corners[0], corners[1]);
 }
 
 /// `end`: the target, or a plan that is gone on with.

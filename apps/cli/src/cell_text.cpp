@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cell_text.hpp"
 
-#include <algorithm>
-
 namespace holdfast::cli {
 
 bool take_mark(std::string_view& text, char mark) {
@@ -35,13 +33,12 @@ std::optional<plan::CellBox> read_box(std::string_view text) {
   if (!take_cell(text, a) || !take_mark(text, ':') || !take_cell(text, b) || !text.empty()) {
     return std::nullopt;
   }
-  return plan::CellBox{.low = {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
-                       .high = {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}};
+  return plan::box_between(a, b);
 }
 
 std::optional<plan::CellBox> read_cell_or_box(std::string_view text) {
   const auto cell = read_cell(text);
-  return cell ? plan::CellBox{.low = *cell, .high = *cell} : read_box(text);
+  return cell ? plan::box_between(*cell, *cell) : read_box(text);
 }
 
 }  // namespace holdfast::cli

@@ -206,7 +206,8 @@ int run(const MoveArguments& options) {
     return fail(asked.error(), options.motions);
   }
   MoveRequest request = std::move(asked).value();
-  if (!take_kept(options.cells, options.reading,
+  if (!options.cells.keep.empty() &&
+      !take_kept(options.cells, options.reading,
                  io::standing_spec(start.value(), "the robot").value(), request.keep)) {
     return kExitBadInput;
   }

@@ -127,7 +127,7 @@ bool take_kept(const PlanCells& cells, const Reading& reading, const model::Robo
       return false;
     }
     for (const base::Cell& cell : listed.value()) {
-      kept.push_back({.low = cell, .high = cell});
+      kept.push_back(plan::box_between(cell, cell));
     }
   }
   return true;

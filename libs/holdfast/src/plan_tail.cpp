@@ -31,6 +31,12 @@ base::Error error_of_done_steps(std::size_t step_count, std::size_t done_count) 
       fmt::format("it has {} steps, of which {} cannot be done", step_count, done_count));
 }
 
+double PlanTime::seconds_passed() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+}
+
+double PlanTime::seconds_left() const { return std::max(0.0, seconds_max_ - seconds_passed()); }
+
 base::Result<KeptTail> judge_tail(const PlanTail& tail, std::size_t begin,
                                   const plan::SequenceOptions& options) {
   const std::size_t count = tail.step_count();

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "holdfast/steps.hpp"
@@ -18,6 +20,25 @@ base::Error error_of_plan(std::string message);
 
 /// The error of a plan with fewer steps than are said to be done.
 base::Error error_of_done_steps(std::size_t step_count, std::size_t done_count);
+
+/// The time for going on with a plan, from its making on.
+class PlanTime {
+ public:
+  PlanTime(double seconds_max, std::function<bool()> is_interrupted)
+      : seconds_max_(seconds_max), is_interrupted_(std::move(is_interrupted)) {}
+
+  double seconds_passed() const;
+  double seconds_left() const;  ///< 0 or more.
+
+  bool is_interrupted() const { return is_interrupted_ && is_interrupted_(); }
+
+  bool is_over() const { return seconds_left() <= 0 || is_interrupted(); }
+
+ private:
+  double seconds_max_;
+  std::function<bool()> is_interrupted_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
 
 /// The steps that are left of a plan.
 class PlanTail {

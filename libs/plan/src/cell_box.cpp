@@ -4,11 +4,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 
 #include "holdfast/model/robot.hpp"
 
 namespace holdfast::plan {
+
+CellBox box_between(const base::Cell& a, const base::Cell& b) {
+  return {.low = {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
+          .high = {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}};
+}
 
 base::Result<std::vector<base::Cell>> kept_modules(std::span<const CellBox> boxes,
                                                    std::span<const base::Cell> modules) {

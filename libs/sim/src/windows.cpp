@@ -39,8 +39,7 @@ bool Engine::can_run_ahead() {
   const std::size_t count = ledger_.agenda().window().size();
   if (count == 0 || count < options.window_events_min || !ledger_.has_later_work() ||
       !ledger_.is_of_modules() || options.trace != nullptr || options.tamper ||
-      options.link.compute_time > 0 || ledger_.agenda().end() - 1 > options.time_max ||
-      ledger_.agenda().window().empty()) {
+      options.link.compute_time > 0 || ledger_.agenda().end() - 1 > options.time_max) {
     return false;
   }
   const std::uint64_t done = ledger_.recorder.event_count();

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <set>
 #include <utility>
 
@@ -121,7 +120,10 @@ base::Result<MoveRest> read_rest(const io::Document& file, const io::Document& p
 class Moving final : public PlanTail {
  public:
   Moving(MoveRest rest, plan::MoveTask task, const MoveRequest& request)
-      : rest_(std::move(rest)), task_(std::move(task)), request_(request) {
+      : rest_(std::move(rest)),
+        task_(std::move(task)),
+        request_(request),
+        time_(request.seconds_max, request.is_interrupted) {
     allowed_ = plan::allowed_steps(task_, io::make_spec(rest_.start).value(), rest_.steps);
   }
 
@@ -136,15 +138,15 @@ class Moving final : public PlanTail {
     if (bounds_.outcome != plan::MoveOutcome::kNotFound) {
       return report(std::move(bounds_), 0);
     }
-    const auto kept =
-        judge_tail(*this, rest_.begin,
-                   {.solver = options.solver, .is_interrupted = [this] { return is_over(); }});
+    const auto kept = judge_tail(
+        *this, rest_.begin,
+        {.solver = options.solver, .is_interrupted = [this] { return time_.is_over(); }});
     if (!kept) {
       return kept.error();
     }
     std::optional<io::MoveReport> found;
     lead_to_tail(
-        kept.value().first, step_count(), [this] { return is_over(); },
+        kept.value().first, step_count(), [this] { return time_.is_over(); },
         [&](std::size_t first) {
           found = lead_to(first);
           return found.has_value();
@@ -167,16 +169,6 @@ class Moving final : public PlanTail {
   bool is_allowed(std::size_t step) const override { return allowed_[step]; }
 
  private:
-  double seconds_passed() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-  }
-
-  double seconds_left() const { return std::max(0.0, request_.seconds_max - seconds_passed()); }
-
-  bool is_over() const {
-    return seconds_left() <= 0 || (request_.is_interrupted && request_.is_interrupted());
-  }
-
   /// The robot of the plan before a step.
   io::Document before(std::size_t step) const {
     return io::after_moves(rest_.start, std::span(rest_.steps).first(step)).value();
@@ -191,7 +183,7 @@ class Moving final : public PlanTail {
     }
     task.target = target.value();
     plan::MoveOptions options = move_options(request_);
-    options.seconds_max = seconds_left() / 2;
+    options.seconds_max = time_.seconds_left() / 2;
     options.state_count_max = kTriedMovesMax;
     auto found = plan::find_moves(task, options);
     if (!found || found.value().outcome != plan::MoveOutcome::kFound) {
@@ -215,7 +207,7 @@ class Moving final : public PlanTail {
   /// Moves to the target, whatever the plan says.
   base::Result<io::MoveReport> anew() const {
     plan::MoveOptions options = move_options(request_);
-    options.seconds_max = seconds_left();
+    options.seconds_max = time_.seconds_left();
     auto found = plan::find_moves(task_, options);
     if (!found) {
       return found.error();
@@ -227,15 +219,15 @@ class Moving final : public PlanTail {
     return {.start = rest_.now,
             .task = task_,
             .plan = std::move(plan),
-            .seconds = seconds_passed(),
-            .is_interrupted = request_.is_interrupted && request_.is_interrupted(),
+            .seconds = time_.seconds_passed(),
+            .is_interrupted = time_.is_interrupted(),
             .kept_count = kept_count};
   }
 
   MoveRest rest_;
   plan::MoveTask task_;  ///< From the robot as it is to the plan's end.
   MoveRequest request_;
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  PlanTime time_;
   std::vector<bool> allowed_;  ///< By step of the plan.
   plan::MovePlan bounds_;      ///< Of any plan for the task.
 };

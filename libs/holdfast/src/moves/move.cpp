@@ -76,26 +76,47 @@ base::Result<std::shared_ptr<const plan::Motions>> find_motions(const std::strin
   return std::make_shared<const plan::Motions>(std::move(motions));
 }
 
-base::Result<io::MoveReport> seek_moves(const io::Document& start_stated,
-                                        const io::Document& target_stated,
-                                        const MoveRequest& request) {
-  const auto ends = with_one_factor(start_stated, target_stated);
+namespace {
+
+/// Both ends as they are meant, and what is asked of them.
+struct Asked {
+  io::Document start;
+  io::Document target;
+  plan::MoveTask task;
+};
+
+base::Result<Asked> asked_of(const io::Document& start, const io::Document& target,
+                             const MoveRequest& request) {
+  auto ends = with_one_factor(start, target);
   if (!ends) {
     return ends.error();
   }
-  const auto& [start, target] = ends.value();
-  auto task = task_of(start, target, request);
+  auto& [from, to] = ends.value();
+  auto task = task_of(from, to, request);
   if (!task) {
     return task.error();
   }
+  return Asked{.start = std::move(from), .target = std::move(to), .task = std::move(task).value()};
+}
+
+}  // namespace
+
+base::Result<io::MoveReport> seek_moves(const io::Document& start_stated,
+                                        const io::Document& target_stated,
+                                        const MoveRequest& request) {
+  auto asked = asked_of(start_stated, target_stated, request);
+  if (!asked) {
+    return asked.error();
+  }
+  auto& [start, target, task] = asked.value();
   const auto begin = std::chrono::steady_clock::now();
-  auto plan = plan::find_moves(task.value(), move_options(request));
+  auto plan = plan::find_moves(task, move_options(request));
   if (!plan) {
     base::Error error = io::with_other_lattice(plan.error(), start);
     return error.message == plan.error().message ? io::with_other_lattice(error, target) : error;
   }
   io::MoveReport report{
-      .start = start, .task = std::move(task).value(), .plan = std::move(plan).value()};
+      .start = std::move(start), .task = std::move(task), .plan = std::move(plan).value()};
   report.is_interrupted = request.is_interrupted && request.is_interrupted();
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return report;
@@ -104,16 +125,12 @@ base::Result<io::MoveReport> seek_moves(const io::Document& start_stated,
 base::Result<ProvedMoves> verify_moves(const io::Document& start_stated,
                                        const io::Document& target_stated,
                                        const MoveRequest& request, std::string_view report) {
-  const auto ends = with_one_factor(start_stated, target_stated);
-  if (!ends) {
-    return ends.error();
+  auto asked = asked_of(start_stated, target_stated, request);
+  if (!asked) {
+    return asked.error();
   }
-  const auto& [start, target] = ends.value();
-  auto task = task_of(start, target, request);
-  if (!task) {
-    return task.error();
-  }
-  const auto certificate = io::read_move_certificate(report, task.value());
+  auto& [start, target, task] = asked.value();
+  const auto certificate = io::read_move_certificate(report, task);
   if (!certificate) {
     return certificate.error();
   }
@@ -125,7 +142,7 @@ base::Result<ProvedMoves> verify_moves(const io::Document& start_stated,
   }
   return ProvedMoves{.start_name = start.name,
                      .target_name = target.name,
-                     .task = std::move(task).value(),
+                     .task = std::move(task),
                      .is_backward = certificate.value().is_backward,
                      .check = check.value()};
 }

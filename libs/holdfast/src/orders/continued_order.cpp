@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "holdfast/model/cell_index.hpp"
@@ -41,7 +40,9 @@ plan::Judgement judged_of(const plan::StepJudgement& step, bool has_parts) {
 class Continuation final : public PlanTail {
  public:
   Continuation(OrderRest rest, const OrderRequest& request)
-      : rest_(std::move(rest)), request_(request) {
+      : rest_(std::move(rest)),
+        request_(request),
+        time_(request.seconds_max, request.is_interrupted) {
     request_.is_reversed = rest_.is_reversed;
     request_.stream = {};
   }
@@ -54,15 +55,6 @@ class Continuation final : public PlanTail {
   bool is_allowed(std::size_t step) const override;
 
  private:
-  double seconds_passed() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-  }
-
-  bool is_over() const {
-    return seconds_passed() >= request_.seconds_max ||
-           (request_.is_interrupted && request_.is_interrupted());
-  }
-
   std::optional<base::Error> find_fault() const;
   std::optional<plan::Element> element_in(const Cell& cell) const;
   std::vector<Cell> cells_of(const std::vector<plan::Element>& elements) const;
@@ -78,7 +70,7 @@ class Continuation final : public PlanTail {
 
   OrderRest rest_;
   OrderRequest request_;
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  PlanTime time_;
   plan::OrderTask task_;
   model::CellIndex index_{0};  ///< Of the target's modules.
   std::optional<plan::ReachFinder> finder_;
@@ -223,7 +215,7 @@ std::optional<base::Error> Continuation::judge_steps() {
   if (!request_.is_exact) {
     options.solved_count_max = plan::kExactModuleCount;
   }
-  options.is_interrupted = [&] { return is_over(); };
+  options.is_interrupted = [&] { return time_.is_over(); };
   const auto kept = judge_tail(*this, 0, options);
   if (!kept) {
     return kept.error();
@@ -246,7 +238,7 @@ base::Result<plan::RobotOrder> Continuation::seek(std::size_t first) const {
     task.target = plan::part_of(task_.target, states_[first]);
   }
   OrderRequest request = request_;
-  request.seconds_max = std::max(0.0, request_.seconds_max - seconds_passed()) / 2;
+  request.seconds_max = time_.seconds_left() / 2;
   plan::RobotOrderOptions options = order_options(request, task_.target.existing.size());
   options.state_count_max = kTriedStatesMax;
   return plan::find_robot_order(task, options);
@@ -339,7 +331,7 @@ std::optional<base::Result<io::OrderReport>> Continuation::lead_to(std::size_t f
   io::OrderReport report{.target = rest_.target, .task = task_};
   report.result = joined(std::move(found).value(), first);
   report.is_reversed = rest_.is_reversed;
-  report.seconds = seconds_passed();
+  report.seconds = time_.seconds_passed();
   report.kept_count = steps_.size() - first;
   return report;
 }
@@ -347,7 +339,7 @@ std::optional<base::Result<io::OrderReport>> Continuation::lead_to(std::size_t f
 base::Result<io::OrderReport> Continuation::search() {
   std::optional<base::Result<io::OrderReport>> found;
   lead_to_tail(
-      first_safe_, steps_.size(), [this] { return is_over(); },
+      first_safe_, steps_.size(), [this] { return time_.is_over(); },
       [&](std::size_t first) {
         found = lead_to(first);
         return found.has_value();
@@ -357,14 +349,14 @@ base::Result<io::OrderReport> Continuation::search() {
 
 /// An order for all that is left, whatever the plan says.
 base::Result<io::OrderReport> Continuation::anew() {
-  request_.seconds_max = std::max(0.0, request_.seconds_max - seconds_passed());
+  request_.seconds_max = time_.seconds_left();
   auto sought = seek_order(rest_.target, request_);
   if (!sought) {
     return sought.error();
   }
   io::OrderReport report = std::move(sought).value();
   report.kept_count = 0;
-  report.seconds = seconds_passed();
+  report.seconds = time_.seconds_passed();
   return report;
 }
 

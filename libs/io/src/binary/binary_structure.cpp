@@ -99,7 +99,6 @@ std::set<std::pair<std::size_t, std::size_t>> special_modules(const Document& do
   return special;
 }
 
-/// The document without its modules but those that have something of their own, and the first.
 /// Takes away what an extension says of pairs and bodies of which later steps bring a module.
 void forget_later(const Document& document, Extension& extension) {
   if (document.steps.size() <= 1 && document.extension.plan.empty()) {
@@ -109,8 +108,8 @@ void forget_later(const Document& document, Extension& extension) {
   for (const ModuleEntry& module : document.modules) {
     there.insert(module.cell);
   }
-  for (std::size_t i = 0; i < std::min<std::size_t>(1, document.steps.size()); ++i) {
-    for (const PlannedEntry& planned : document.steps[i]) {
+  if (!document.steps.empty()) {
+    for (const PlannedEntry& planned : document.steps.front()) {
       there.insert(planned.cell);
     }
   }
@@ -122,6 +121,7 @@ void forget_later(const Document& document, Extension& extension) {
                 [&](const ConnectionEntry& entry) { return has_later(entry.between); });
 }
 
+/// The document without its modules but those that have something of their own, and the first.
 Document without_modules(const Document& document) {
   Document common;
   common.name = document.name;

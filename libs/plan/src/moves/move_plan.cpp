@@ -65,11 +65,12 @@ base::Result<Problem> make_problem(const MoveTask& task) {
   if (auto fault = find_robot_fault(task, task.target, "the target")) {
     return *std::move(fault);
   }
+  std::vector<CellBox> kept;
   for (const Cell& cell : task.keep) {
-    if (std::ranges::find(task.start.existing, cell) == task.start.existing.end()) {
-      return base::bad_input(
-          fmt::format("the cell {} is to be kept, but no module is there", model::text(cell)));
-    }
+    kept.push_back(box_between(cell, cell));
+  }
+  if (const auto modules = kept_modules(kept, task.start.existing); !modules) {
+    return modules.error();
   }
   auto space = ShapeSpace::create(kept_state(task, task.start), kept_state(task, task.target));
   if (!space) {

@@ -21,6 +21,9 @@ struct CellBox {
   }
 };
 
+/// The box with two cells as corners, whichever.
+CellBox box_between(const base::Cell& a, const base::Cell& b);
+
 /// The modules that no step of a plan may touch: those of `modules` that are in one of the boxes,
 /// each once, ascending. Error: a box has no module.
 base::Result<std::vector<base::Cell>> kept_modules(std::span<const CellBox> boxes,
