@@ -37,9 +37,10 @@ FRAGMENT = re.compile(r'(After|Also|And|As|At|Before|But|By|False|For|From|In|It
 FREESTANDING = {'base', 'boards', 'mechanics', 'agent', 'module'}
 APPLICATIONS = ('apps/', 'examples/', 'python/')
 FACADE_HEADERS = {'holdfast', 'distributed', 'emulated', 'exit_code', 'figure_file', 'file_ending',
-                  'cascade', 'deformed_series', 'falling_pieces', 'fit', 'instrument', 'losses',
-                  'move', 'order', 'plan_failures', 'reliability', 'simulated_next',
-                  'simulated_stages', 'simulated_steps', 'steps', 'trial', 'weakened'}
+                  'cascade', 'check_formats', 'deformed_series', 'falling_pieces', 'fit',
+                  'instrument', 'losses', 'move', 'order', 'plan_failures', 'reliability',
+                  'simulated_next', 'simulated_stages', 'simulated_steps', 'steps', 'trial',
+                  'weakened'}
 HOSTED_HEADERS = {'string', 'vector', 'map', 'set', 'memory', 'iostream', 'fstream', 'variant',
                   'cstdio', 'cstdlib', 'functional', 'stdexcept'}
 # base is freestanding but for what says in its first lines that it is for hosts.

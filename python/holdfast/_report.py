@@ -340,6 +340,12 @@ class Report(Judged, Drawn):
         from ._vtk import to_vtk
         return to_vtk(self)
 
+    def save(self, path: Path) -> None:
+        """Writes what the file's ending says, whole or not at all: the report (``.json``), the
+        table of connections (``.csv``), a grid for ParaView (``.vtu``), else the picture
+        (``.svg``, ``.png``, ``.pdf``)."""
+        self._held.save_by_ending(path)
+
     def save_json(self, path: Path) -> None:
         """Writes the report, whole or not at all."""
         self._held.save(path, 'json')

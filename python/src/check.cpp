@@ -7,6 +7,8 @@
 
 #include "check_options.hpp"
 #include "common.hpp"
+#include "holdfast/check_formats.hpp"
+#include "holdfast/figure_file.hpp"
 #include "long_work.hpp"
 
 /// Checks and what they find.
@@ -262,19 +264,32 @@ std::string text_of(const Write& write) {
 /// Writes a file, whole or not at all.
 void save(const CheckedStructure& check, const py::handle& given, const std::string& kind) {
   const std::string path = path_of(given);
-  expect_ending(path, kind);
+  const CheckFormat& format = *find_check_format(kind);
+  take(find_foreign_ending(format.file, path), path);
   const auto error = without_gil([&] {
-    return write_file(path, [&](std::ostream& out) {
-      if (kind == "json") {
-        write_report_json(out, *check.structure, check.result);
-      } else if (kind == "csv") {
-        write_connections_csv(out, *check.structure, check.result);
-      } else {
-        write_picture_vtu(out, *check.structure, check.result);
-      }
-    });
+    return write_file(
+        path, [&](std::ostream& out) { format.write(out, *check.structure, check.result, {}); });
   });
   take(error, path);
+}
+
+/// Writes what the ending of a file says: a format of the table, or the picture.
+void save_by_ending(const CheckedStructure& check, const py::handle& given) {
+  const std::string path = path_of(given);
+  if (const CheckFormat* const format = find_check_format_of(path)) {
+    save(check, given, std::string(format->name));
+    return;
+  }
+  if (!has_ending_of(FileFormat::kFigure, path)) {
+    std::string endings;
+    for (const CheckFormat& format : check_formats()) {
+      endings += "." + std::string(format.name) + ", ";
+    }
+    throw Error("expected a file that ends in " + endings + ".svg, .png or .pdf, found " +
+                io::one_line(path));
+  }
+  take(without_gil([&] { return write_figure(path, picture_svg(*check.structure, check.result)); }),
+       path);
 }
 
 void add_arrays(py::class_<CheckedStructure, std::shared_ptr<CheckedStructure>>& type) {
@@ -302,12 +317,14 @@ void add_texts(py::class_<CheckedStructure, std::shared_ptr<CheckedStructure>>& 
            })
       .def("csv",
            [](const CheckedStructure& c) {
-             return text_of(
-                 [&](std::ostream& out) { write_connections_csv(out, *c.structure, c.result); });
+             return text_of([&](std::ostream& out) {
+               find_check_format("csv")->write(out, *c.structure, c.result, {});
+             });
            })
       .def("certificate",
            [](const CheckedStructure& c) { return take(certificate_text(*c.structure, c.result)); })
-      .def("save", &save);
+      .def("save", &save)
+      .def("save_by_ending", &save_by_ending);
 }
 
 }  // namespace

@@ -146,6 +146,23 @@ def test_files(arm, tmp_path):
         report.save_svg(tmp_path / 'absent' / 'r.svg')
 
 
+def test_a_file_gets_what_its_ending_says(arm, tmp_path):
+    report = arm.check()
+    for name in ('r.json', 'r.csv', 'r.svg', 'r.vtu', 'r.png', 'r.pdf', 'r.SVG'):
+        report.save(tmp_path / name)
+    assert (tmp_path / 'r.json').read_text().rstrip() == report.json().rstrip()
+    assert (tmp_path / 'r.csv').read_text() == report.csv()
+    assert (tmp_path / 'r.svg').read_text() == (tmp_path / 'r.SVG').read_text() == report.svg()
+    report.save_vtu(tmp_path / 'other.vtu')
+    assert (tmp_path / 'r.vtu').read_bytes() == (tmp_path / 'other.vtu').read_bytes()
+    assert (tmp_path / 'r.png').read_bytes()[1:4] == b'PNG'
+    assert (tmp_path / 'r.pdf').read_bytes()[:5] == b'%PDF-'
+    for name in ('r', 'r.xyzzy', 'r.html'):
+        with pytest.raises(holdfast.Error, match='expected a file that ends in .json, .csv, .vtu'):
+            report.save(tmp_path / name)
+        assert not (tmp_path / name).exists()
+
+
 @pytest.mark.parametrize('options', [{}, {'limit': True}, {'proof': True}, {'bonded': True},
                                      {'deformed': True}],
                          ids=str)

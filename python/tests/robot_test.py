@@ -85,7 +85,7 @@ def test_what_is_no_array_of_cells(cells, where):
 @pytest.mark.parametrize('cells, said', [
     ([], 'no existing module'),
     (np.zeros((0, 3)), 'no existing module'),
-    ([[0, 0, 0], [0, 0, 0]], 'two modules in the cell (0,0,0)'),
+    ([[0, 0, 0], [0, 0, 0]], 'the cell (0,0,0) is listed twice'),
     ([[0, 0, 5]], 'nothing holds the robot'),
     ([[0, 0, 0], [5, 0, 0]], 'not connected')])
 def test_what_is_no_robot(cells, said):

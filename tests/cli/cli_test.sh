@@ -199,7 +199,7 @@ expect_line err 'or all@TIME'
 expect_exit 65 simulate "$safe" --attach 5,1,2@1
 expect_line err 'one is there'
 expect_exit 65 simulate "$safe" --plan 9,9,9@1
-expect_line err 'touches neither'
+expect_line err 'is not next to the robot'
 expect_exit 64 simulate "$safe" --loss 1.5
 expect_exit 0 simulate "$safe" --next --link unit --json faces.json --svg faces.svg
 expect_line faces.json '"undecided": 0'
@@ -352,7 +352,7 @@ expect_line err 'weightless.json: /material/mass_kg: mass_kg is 0, expected 1e-1
 printf '{"format": "holdfast-structure", "version": 2, "support_z": null, "modules": [[0,0,0]],
   "obstacles": [{"cells": [[-1,0,0], [1,0,0]]}]}' >slot.json
 expect_exit 1 check slot.json
-expect_line out 'stability +unstable: as a rigid body it holds.*; the model-based check says un'
+expect_line out 'stability +unstable: as a rigid body it holds.*; the elastic model says un'
 
 # Named structures, large ones, bonded supports.
 expect_exit 0 generate cube 3
@@ -453,11 +453,11 @@ expect_refusal 'empty' blank.xml
 head -c 1000000 /dev/urandom >noise
 expect_refusal '.' noise
 json '"modules": [[0,0,0],[0,0,0]]' >double.json
-expect_refusal 'two modules in the cell \(0,0,0\)' double.json
+expect_refusal 'the cell \(0,0,0\) is listed twice' double.json
 json '"modules": [[0,0,0]], "planned": [[0,0,0]]' >occupied.json
 expect_refusal 'planned cell \(0,0,0\) is occupied' occupied.json
 json '"modules": [[0,0,0]], "planned": [[5,0,0]]' >loose.json
-expect_refusal '\(5,0,0\) touches neither' loose.json
+expect_refusal '\(5,0,0\) is not next to the robot' loose.json
 json '"modules": [[0,0,0],[2,0,0]]' >apart.json
 expect_refusal 'not connected' apart.json
 json '"modules": [[0,0,3],[0,0,4]]' >floating.json
@@ -833,7 +833,7 @@ fi
 # Loads that are rounding are not told as loads; a load below 1 does not read as 1.
 expect_exit 0 generate tower 200 -o tower.json
 expect_exit 0 check tower.json
-expect_line out 'no connection is known to be pulled apart'
+expect_line out 'no connection is known to be in tension'
 grep -q 'breaks at' out && fault "a weight that breaks nothing: $(cat out)"
 json '"modules": [[0,0,0],[0,0,1],[1,0,1]], "material": {"facet_mm": 50}' >facet.json
 code=0

@@ -192,14 +192,14 @@ expect_exit 1 order small_arch.json --help-seconds 0 --certificate none.json
 expect_line out 'NONE        there is no safe order that keeps the robot in one piece'
 ! grep -q -- '--pieces' out || fault 'what nobody has sought is recommended'
 expect_exit 1 order small_arch.json --json apart_report.json
-expect_line out '^  help        in several pieces there is an order: seek it with --pieces$'
+expect_line out '^  suggestion  in several pieces there is an order: seek it with --pieces$'
 expect_line apart_report.json '"pieces": true'
 expect_exit 0 order small_arch.json --pieces -o from_both.json --json from_both_report.json
 grep -q '"apart": true' from_both.json || fault 'no step is marked'
 expect_exit 0 steps from_both.json
 sed 's/, "apart": true//' from_both.json >lone.json
 expect_exit 65 steps lone.json
-expect_line err 'touches neither the robot nor a new module that does'
+expect_line err 'is not next to the robot, directly or through other new modules'
 expect_exit 0 order small_arch.json --pieces --reverse -o down.json
 expect_exit 0 steps down.json
 sed -i 's/"strength_lateral_n": 0.8/"strength_lateral_n": 0.3/' small_arch.json

@@ -6,12 +6,14 @@
 #include <array>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <memory>
 
 #include "commands.hpp"
 #include "figure.hpp"
 #include "file_clash.hpp"
 #include "holdfast/cascade.hpp"
+#include "holdfast/check_formats.hpp"
 #include "holdfast/deformed_series.hpp"
 #include "holdfast/falling_pieces.hpp"
 #include "holdfast/trial.hpp"
@@ -30,11 +32,9 @@ using verdict::Verdict;
 struct CheckArguments {
   Reading reading;
   std::vector<std::string> files;
-  std::string json;
+  std::map<std::string_view, std::string> paths;  ///< Of formats, by their names.
   std::string connections = "all";
-  std::string csv;
   Figure figure;
-  std::string vtk;
   std::string html;
   std::string certificate;
   bool is_quiet = false;
@@ -55,20 +55,35 @@ struct CheckArguments {
 
   /// The files to be written, each with its option.
   Outputs outputs() const {
-    return {{"--json", json, FileFormat::kJson},
-            {"--csv", csv, FileFormat::kCsv},
-            {"--svg", figure.path, FileFormat::kFigure},
-            {"--vtk", vtk, writes_series() || writes_fall() ? FileFormat::kPvd : FileFormat::kVtu},
-            {"--html", html, FileFormat::kHtml},
-            {"--certificate", certificate}};
+    Outputs outputs;
+    for (const CheckFormat& format : check_formats()) {
+      const bool is_series = format.file == FileFormat::kVtu && (writes_series() || writes_fall());
+      outputs.push_back(
+          {format.option, paths.at(format.name), is_series ? FileFormat::kPvd : format.file});
+    }
+    outputs.push_back({"--svg", figure.path, FileFormat::kFigure});
+    outputs.push_back({"--html", html, FileFormat::kHtml});
+    outputs.push_back({"--certificate", certificate});
+    return outputs;
+  }
+
+  const std::string& json() const { return paths.at("json"); }
+
+  const std::string& vtk() const { return paths.at("vtu"); }
+
+  /// Whether nothing but reports of any number of structures is to be written.
+  bool writes_reports_only() const {
+    return figure.path.empty() && html.empty() && certificate.empty() &&
+           std::ranges::all_of(
+               paths, [](const auto& path) { return path.first == "json" || path.second.empty(); });
   }
 
   /// Whether --vtk is the whole path of the deformed shape.
-  bool writes_series() const { return is_deformed_wanted && has_ending(vtk, ".pvd"); }
+  bool writes_series() const { return is_deformed_wanted && has_ending(vtk(), ".pvd"); }
 
   /// Whether --vtk is how what breaks falls.
   bool writes_fall() const {
-    return is_cascade_wanted && !is_deformed_wanted && has_ending(vtk, ".pvd");
+    return is_cascade_wanted && !is_deformed_wanted && has_ending(vtk(), ".pvd");
   }
 };
 
@@ -79,7 +94,7 @@ class CheckRun {
       : options_(options), progress_(options.is_quiet) {}
 
   int run() {
-    note_idle_connections(options_.connections, {options_.json, options_.csv});
+    note_idle_connections(options_.connections, {options_.json(), options_.paths.at("csv")});
     for (std::size_t i = 0; i < options_.files.size(); ++i) {
       if (is_many()) {
         progress_.show(
@@ -130,7 +145,7 @@ class CheckRun {
       fmt::print("{}{}", remedies ? remedies_text(*remedies) : "", more.text);
     }
     add_report([&](std::ostream& out) {
-      write_report_json(out, structure, result, report_options(options_.json),
+      write_report_json(out, structure, result, report_options(options_.json()),
                         [&](io::JsonStream& json) {
                           if (remedies) {
                             write_remedies_member(json, *remedies);
@@ -148,12 +163,12 @@ class CheckRun {
     if (!options_.writes_series()) {
       return check(structure, how);
     }
-    DeformedSeries series(options_.vtk, structure, how);
+    DeformedSeries series(options_.vtk(), structure, how);
     how.on_deformed_state = series.writer();
     CheckResult result = check(structure, how);
     if (const auto error = series.finish()) {
       ++bad_count_;
-      print_error(*error, options_.vtk);
+      print_error(*error, options_.vtk());
     }
     return result;
   }
@@ -204,7 +219,9 @@ class CheckRun {
                         const std::string& file) {
     MoreAnswers more;
     if (scatter) {
-      const bool is_table_wanted = !options_.csv.empty() || !options_.vtk.empty();
+      const bool is_table_wanted = std::ranges::any_of(options_.paths, [](const auto& path) {
+        return path.first != "json" && !path.second.empty();
+      });
       const auto reliability = find_reliability(
           structure, result, *scatter, how,
           is_table_wanted ? std::numeric_limits<std::size_t>::max() : verdict::kLikeliestMax);
@@ -258,7 +275,7 @@ class CheckRun {
 
   std::optional<plan::Remedies> seek_remedies(const Structure& structure, const CheckResult& result,
                                               const CheckOptions& how, const std::string& file) {
-    const bool is_said = shows_text() || !options_.json.empty();
+    const bool is_said = shows_text() || !options_.json().empty();
     if (!options_.are_remedies_wanted || !is_said || result.assessment.verdict == Verdict::kSafe) {
       return std::nullopt;
     }
@@ -266,10 +283,13 @@ class CheckRun {
   }
 
   void write_files(const Structure& structure, const CheckResult& result, const MoreAnswers& more) {
-    if (!options_.csv.empty()) {
-      write(options_.csv, [&](std::ostream& out) {
-        write_connections_csv(out, structure, result, report_options(options_.csv, more.numbers));
-      });
+    for (const CheckFormat& format : check_formats()) {
+      const std::string& path = options_.paths.at(format.name);
+      if (!path.empty() && !is_written_otherwise(format)) {
+        write(path, [&](std::ostream& out) {
+          format.write(out, structure, result, report_options(path, more.numbers));
+        });
+      }
     }
     const bool is_drawn =
         write_figure_or_complain(options_.figure, [&](const io::FigureOptions& figure) {
@@ -279,10 +299,6 @@ class CheckRun {
     bad_count_ += is_drawn ? 0 : 1;
     if (options_.writes_fall()) {
       write_fall(structure, result, *more.cascade);
-    } else if (!options_.vtk.empty() && !options_.writes_series()) {
-      write(options_.vtk, [&](std::ostream& out) {
-        write_picture_vtu(out, structure, result, report_options(options_.vtk, more.numbers));
-      });
     }
     if (!options_.html.empty()) {
       write_page(structure, result);
@@ -292,12 +308,19 @@ class CheckRun {
     }
   }
 
+  /// Whether a file is not of one check alone: reports come one after another, a series is many.
+  bool is_written_otherwise(const CheckFormat& format) const {
+    return format.file == FileFormat::kJson ||
+           (format.file == FileFormat::kVtu &&
+            (options_.writes_series() || options_.writes_fall()));
+  }
+
   void write_fall(const Structure& structure, const CheckResult& result,
                   const plan::Cascade& cascade) {
-    if (const auto error = write_fall_series(options_.vtk, structure, result.assessment, cascade,
+    if (const auto error = write_fall_series(options_.vtk(), structure, result.assessment, cascade,
                                              options_.thread_count)) {
       ++bad_count_;
-      print_error(*error, options_.vtk);
+      print_error(*error, options_.vtk());
     }
   }
 
@@ -361,10 +384,10 @@ class CheckRun {
   }
 
   void open_json() {
-    auto opened = host::OutputFile::open(options_.json);
+    auto opened = host::OutputFile::open(options_.json());
     if (!opened) {
       ++bad_count_;
-      print_error(opened.error(), options_.json);
+      print_error(opened.error(), options_.json());
       return;
     }
     json_.emplace(std::move(opened).value());
@@ -374,7 +397,7 @@ class CheckRun {
   /// Reports are written as they come, one object or a list.
   template <class Write>
   void add_report(const Write& write) {
-    if (options_.json.empty()) {
+    if (options_.json().empty()) {
       return;
     }
     if (++report_count_ == 1) {
@@ -393,7 +416,7 @@ class CheckRun {
     json_->stream() << (is_many() ? "\n]\n" : "\n");
     if (const auto error = json_->finish()) {
       ++bad_count_;
-      print_error(*error, options_.json);
+      print_error(*error, options_.json());
     }
   }
 
@@ -470,18 +493,16 @@ class CheckRun {
 
 int run(CheckArguments options) {
   options.reading.may_be_in_pieces = true;
-  if (options.files.size() > 1 &&
-      !(options.csv.empty() && options.figure.path.empty() && options.vtk.empty() &&
-        options.html.empty() && options.certificate.empty())) {
+  if (options.files.size() > 1 && !options.writes_reports_only()) {
     throw UsageError(
-        fmt::format("--csv, --svg, --vtk, --html and --certificate are for one structure, {} "
-                    "files are given",
+        fmt::format("of the outputs only --json is for several structures, {} files are given",
                     options.files.size()));
   }
   refuse_clashes(options.files, options.outputs());
-  const std::array others = {options.files.front(), options.json, options.csv, options.figure.path};
+  const std::array others = {options.files.front(), options.json(), options.paths.at("csv"),
+                             options.figure.path};
   if (options.writes_series() || options.writes_fall()) {
-    refuse_series(options.vtk, others);
+    refuse_series(options.vtk(), others);
   }
   return CheckRun(options).run();
 }
@@ -520,15 +541,12 @@ Command add_check(CLI::App& app) {
                "Structures in any format that holdfast convert lists; - is standard input");
   add_reading(*command, options->reading);
   add_safety_factor(*command, options->reading);
-  add_output(*command, "--json", options->json,
-             "Write the whole report as JSON; - is standard output");
+  for (const CheckFormat& format : check_formats()) {
+    add_output(*command, std::string(format.option), options->paths[format.name],
+               std::string(format.help));
+  }
   add_connections(*command, options->connections);
-  add_output(*command, "--csv", options->csv,
-             "Write a table, a line for each connection with its loads");
   add_figure(*command, options->figure, "Draw the structure and its loads");
-  add_output(*command, "--vtk", options->vtk,
-             "Write a .vtu file for ParaView; with a .pvd name and --deformed the whole path, "
-             "with --cascade the fall");
   add_output(*command, "--html", options->html,
              "Write a page to look at in a browser, with the report");
   add_output(*command, "--certificate", options->certificate,

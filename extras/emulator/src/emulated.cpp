@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "distributed_parts.hpp"
+#include "distributed/distributed_parts.hpp"
 #include "report_entry.hpp"
 
 namespace holdfast {

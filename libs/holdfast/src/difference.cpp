@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "distributed_parts.hpp"
+#include "distributed/distributed_parts.hpp"
 
 namespace holdfast {
 namespace {

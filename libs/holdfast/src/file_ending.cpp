@@ -64,6 +64,10 @@ bool has_ending(std::string_view path, std::string_view ending) {
   return ending_of(path) == ending;
 }
 
+bool has_ending_of(FileFormat format, std::string_view path) {
+  return std::ranges::find(formats(), format, &Endings::format)->takes(ending_of(path));
+}
+
 std::optional<base::Error> find_foreign_ending(FileFormat format, std::string_view path) {
   const std::string ending = ending_of(path);
   const auto own = std::ranges::find(formats(), format, &Endings::format);

@@ -306,28 +306,6 @@ std::string picture_svg(const Structure& structure, const CheckResult& result,
                        structure.document.extension.obstacles, figure);
 }
 
-std::string picture_vtu(const Structure& structure, const CheckResult& result) {
-  return text_of([&](std::ostream& out) { write_picture_vtu(out, structure, result); });
-}
-
-void write_picture_vtu(std::ostream& out, const Structure& structure, const CheckResult& result,
-                       const io::WriteOptions& options) {
-  const std::vector<model::Obstacle>& obstacles = structure.document.extension.obstacles;
-  if (result.deformed && !result.deformed->last.poses.empty()) {
-    const large::Path& path = *result.deformed;
-    io::write_deformed_vtu(out, structure.robot, result.assessment,
-                           path.loaded ? path.loaded->factor : path.last.factor, options,
-                           obstacles);
-    return;
-  }
-  io::write_vtu(out, structure.robot, result.assessment, options, obstacles);
-}
-
-void write_connections_csv(std::ostream& out, const Structure& structure, const CheckResult& result,
-                           const io::ReportOptions& options) {
-  io::write_connections_csv(out, structure.robot, result.assessment, options);
-}
-
 std::string error_json(const base::Error& error, const io::ReportOrigin& origin) {
   return io::write_error_json(error, origin);
 }

@@ -205,12 +205,12 @@ struct Fault {
 
 TEST(FacadeProperties, an_error_names_the_cell_and_the_rule) {
   const std::vector<Fault> faults = {
-      {{{0, 0, 0}, {1, 0, 0}, {1, 0, 0}}, {}, {}, "(1,0,0)", "expected one"},
+      {{{0, 0, 0}, {1, 0, 0}, {1, 0, 0}}, {}, {}, "(1,0,0)", "listed twice"},
       {{{0, 0, 0}, {5, 0, 0}}, {}, {}, "(5,0,0)", "not connected"},
       {{{0, 0, 0}, {3'000'000, 0, 0}}, {}, {}, "(3000000,0,0)", "outside the lattice"},
       {{{0, 0, 0}, {0, 0, 1}}, {{0, 0, 1}}, {}, "(0,0,1)", "occupied by an existing module"},
       {{{0, 0, 0}}, {{0, 0, 1}, {0, 0, 1}}, {}, "(0,0,1)", "planned twice"},
-      {{{0, 0, 0}}, {{0, 0, 1}, {0, 4, 2}}, {}, "(0,4,2)", "touches neither"},
+      {{{0, 0, 0}}, {{0, 0, 1}, {0, 4, 2}}, {}, "(0,4,2)", "is not next to the robot"},
       {{{0, 0, 0}}, {}, {{0, 0, 1}}, "(0,0,1)", "holds no existing module"},
       {{{0, 0, 4}, {0, 0, 3}}, {}, {}, "(0,0,3)", "nothing holds the robot"},
       {{{0, 0, 0}, {0, 0, -1}}, {}, {}, "(0,0,-1)", "below the ground"}};

@@ -4,15 +4,21 @@
 // all.
 #include "holdfast/holdfast.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
+#include <string_view>
 #include <tuple>
+#include <utility>
 #include <vector>
+
+#include "holdfast/check_formats.hpp"
 
 namespace holdfast {
 namespace {
@@ -46,7 +52,25 @@ TEST(Facade, goes_from_text_to_a_verdict_and_its_reports) {
   EXPECT_NE(report_text(structure.value(), result).find("2 existing, 0 planned"),
             std::string::npos);
   EXPECT_NE(picture_svg(structure.value(), result).find("</svg>"), std::string::npos);
-  EXPECT_NE(picture_vtu(structure.value(), result).find("</VTKFile>"), std::string::npos);
+}
+
+TEST(Facade, writes_what_it_found_in_every_format_of_its_table) {
+  const auto structure = load_text(kTwoModules, "pair");
+  ASSERT_TRUE(structure);
+  const CheckResult result = check(structure.value());
+  const std::pair<std::string_view, std::string_view> ends[] = {
+      {"json", "}"}, {"csv", "\n"}, {"vtu", "</VTKFile>\n"}};
+  ASSERT_EQ(check_formats().size(), std::size(ends));
+  for (const auto& [name, end] : ends) {
+    const CheckFormat* const format = find_check_format(name);
+    ASSERT_NE(format, nullptr) << name;
+    EXPECT_EQ(find_check_format_of(fmt::format("a.b.{}", name)), format);
+    std::ostringstream out;
+    format->write(out, structure.value(), result, {});
+    EXPECT_TRUE(out.view().ends_with(end)) << name;
+  }
+  EXPECT_EQ(find_check_format("svg"), nullptr);
+  EXPECT_EQ(find_check_format_of("robot.xyzzy"), nullptr);
 }
 
 TEST(Facade, says_how_many_steps_a_check_leaves_out) {

@@ -116,7 +116,7 @@ std::string_view fixed_text(ReasonCode code) {
     case ReasonCode::kSingleModule:
       return "stable, and a single module has no connection to break";
     case ReasonCode::kNoTension:
-      return "stable, and no connection is pulled apart";
+      return "stable; no connection is in tension";
     case ReasonCode::kUnilateralContact:
       return "the loads come from exact unilateral contact (Eqs. 6-8): the paper's regularised "
              "contact (Eqs. 9-12) has no usable answer here";
@@ -138,7 +138,7 @@ std::string_view fixed_text(ReasonCode code) {
     case ReasonCode::kRigidUndecided:
       return "whether contact forces hold it was not found out";
     case ReasonCode::kModelFalls:
-      return "the model-based check says unstable, as no facet is fully pressed and the pressed "
+      return "the elastic model says unstable, as no facet is fully pressed and the pressed "
              "corners lie on one line; contact forces of a rigid body that would hold it do "
              "exist, so it may depend on how the load came, and is not safe";
     case ReasonCode::kStatesDisagree:
@@ -250,7 +250,7 @@ std::string load_text(const Reason& reason, Cells cells) {
                          cells.size() > 1 ? model::text(cells[1]) : "an obstacle");
     case ReasonCode::kNoKnownTension:
       return fmt::format(
-          "stable, and no connection is known to be pulled apart: none carries more than {:.1g} of "
+          "stable, and no connection is known to be in tension: none carries more than {:.1g} of "
           "its strength",
           rounded_up(n[0]));
     case ReasonCode::kHolds:
@@ -304,7 +304,7 @@ std::string reason_text(const verdict::Reason& reason, std::span<const base::Cel
                              ? ": the stiffness matrix became singular"
                              : "");
     case ReasonCode::kModelDisagrees:
-      return fmt::format("the model-based check says {}; on flat ground the rigid body decides",
+      return fmt::format("the elastic model says {}; on flat ground the rigid body decides",
                          n[0] != 0 ? "stable" : "unstable");
     case ReasonCode::kNotProved:
       return "not proved: " + reason.quoted;

@@ -236,7 +236,7 @@ TEST(Reason, is_told_with_its_numbers) {
             "5 of 25 connections would break; the worst, " + model::ends_text(chain.robot, 24) +
                 ", is loaded to 100.03 % of its strength");
   EXPECT_EQ(text(ReasonCode::kNoKnownTension, {0.00012}),
-            "stable, and no connection is known to be pulled apart: none carries more than 0.0002 "
+            "stable, and no connection is known to be in tension: none carries more than 0.0002 "
             "of its strength");
   const double infinity = std::numeric_limits<double>::infinity();
   EXPECT_EQ(text(ReasonCode::kSolutionsDisagree, {2, 0.9, 1.1, infinity, -infinity}),

@@ -193,7 +193,7 @@ TEST(Svg, where_there_is_next_to_no_load_nothing_is_the_worst) {
   ASSERT_LT(assessment.load_ratio_max.value_or(1), 1e-9);  // A plate on the ground.
   const Picture picture(write_svg(robot, assessment, "plate"));
   EXPECT_TRUE(picture.all("callout").empty());
-  EXPECT_NE(picture.texts("verdict").find("no connection is pulled apart"), std::string::npos);
+  EXPECT_NE(picture.texts("verdict").find("no connection is in tension"), std::string::npos);
 }
 
 TEST(Svg, titles_are_escaped_and_shortened) {

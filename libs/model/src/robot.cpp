@@ -39,7 +39,7 @@ std::optional<std::string> find_double_cell(const RobotSpec& spec, CellIndex& in
   std::int32_t next = 0;
   for (const Cell& cell : spec.existing) {
     if (index.insert(cell, next++) != CellIndex::kNone) {
-      return fmt::format("two modules in the cell {}, expected one", text(cell));
+      return fmt::format("the cell {} is listed twice", text(cell));
     }
   }
   const auto existing_count = static_cast<std::int32_t>(spec.existing.size());

@@ -212,8 +212,9 @@ std::string list_text(const std::vector<std::vector<std::int32_t>>& pieces,
 }
 
 std::string planned_apart(const Cell& cell) {
-  return fmt::format("the planned cell {} touches neither the robot nor a planned cell that does",
-                     text(cell));
+  return fmt::format(
+      "the planned cell {} is not next to the robot, directly or through other planned cells",
+      text(cell));
 }
 
 }  // namespace

@@ -252,7 +252,7 @@ TEST(Robot, needs_an_existing_module) {
 }
 
 TEST(Robot, has_one_module_in_a_cell) {
-  expect_error({.existing = {{0, 0, 0}, {1, 0, 0}, {0, 0, 0}}}, {"two modules", "(0,0,0)", "one"});
+  expect_error({.existing = {{0, 0, 0}, {1, 0, 0}, {0, 0, 0}}}, {"(0,0,0)", "listed twice"});
   expect_error({.existing = {{0, 0, 0}, {1, 0, 0}}, .planned = {{1, 0, 0}}},
                {"planned cell (1,0,0)", "occupied by an existing module"});
   expect_error({.existing = {{0, 0, 0}}, .planned = {{1, 0, 0}, {1, 0, 0}}},
@@ -268,7 +268,7 @@ TEST(Robot, is_connected_without_its_planned_modules) {
 
 TEST(Robot, touches_each_planned_module_or_one_that_it_touches) {
   expect_error({.existing = {{0, 0, 0}}, .planned = {{1, 0, 0}, {3, 0, 0}, {4, 0, 0}}},
-               {"planned cell (3,0,0)", "touches neither"});
+               {"planned cell (3,0,0)", "is not next to the robot"});
   EXPECT_TRUE(
       Robot::create({.existing = {{0, 0, 0}}, .planned = {{2, 0, 0}, {1, 0, 0}}}).has_value());
 }

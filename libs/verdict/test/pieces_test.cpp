@@ -185,7 +185,7 @@ TEST(Pieces, are_no_robot_unless_all_are_held_and_somebody_asks) {
   spec.existing.resize(3);
   EXPECT_EQ(model::Robot::create(spec).value().pieces().size(), 2U);
   spec.planned = {{9, 0, 0}};
-  EXPECT_NE(model::Robot::create(spec).error().message.find("(9,0,0) touches neither"),
+  EXPECT_NE(model::Robot::create(spec).error().message.find("(9,0,0) is not next to the robot"),
             std::string::npos);
   // A planned module that would join two pieces joins no robot that stands before.
   spec.existing = {{0, 0, 0}, {2, 0, 0}};

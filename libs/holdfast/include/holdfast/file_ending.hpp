@@ -31,6 +31,9 @@ std::string ending_of(std::string_view path);
 /// Whether a path ends so, in small letters or large ones: ".png".
 bool has_ending(std::string_view path, std::string_view ending);
 
+/// Whether files of this format may end as this path does.
+bool has_ending_of(FileFormat format, std::string_view path);
+
 /// Returns an error if a file's name ends as files of another format do: nobody can read an SVG
 /// that is called arm.png. Other endings, and none, are allowed.
 std::optional<base::Error> find_foreign_ending(FileFormat format, std::string_view path);

@@ -232,25 +232,18 @@ struct TextOptions {
   bool has_notes = true;  ///< Whether it lists those of the reader.
 };
 
-/// Reports and pictures of a checked structure; see io/report.hpp and io/picture.hpp. The text is
-/// what the program prints below the line of the verdict.
+/// Reports and pictures of a checked structure; see io/report.hpp and io/picture.hpp, and for other
+/// formats check_formats.hpp. The text is what the program prints below the line of the verdict.
 std::string report_json(const Structure& structure, const CheckResult& result);
 std::string report_text(const Structure& structure, const CheckResult& result,
                         const TextOptions& options = {});
 std::string picture_svg(const Structure& structure, const CheckResult& result,
                         const io::FigureOptions& figure = {});
-std::string picture_vtu(const Structure& structure, const CheckResult& result);
 
 /// Writes the JSON report into a stream, in a fixed amount of memory, however large the robot;
 /// `more` adds keys at its end.
 void write_report_json(std::ostream& out, const Structure& structure, const CheckResult& result,
                        const io::ReportOptions& options = {}, const io::MoreKeys& more = {});
-void write_picture_vtu(std::ostream& out, const Structure& structure, const CheckResult& result,
-                       const io::WriteOptions& options = {});
-
-/// A table of the connections and what each carries.
-void write_connections_csv(std::ostream& out, const Structure& structure, const CheckResult& result,
-                           const io::ReportOptions& options = {});
 
 /// The entry of a JSON report for a file that could not be checked: {"name", "error", "where"}.
 std::string error_json(const base::Error& error, const io::ReportOrigin& origin);

@@ -6,6 +6,7 @@
 
 #include <utility>
 
+#include "holdfast/io/move_report.hpp"
 #include "plan_tail.hpp"
 
 namespace holdfast {

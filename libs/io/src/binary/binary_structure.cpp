@@ -203,8 +203,8 @@ std::optional<base::Error> sort_along_curve(const base::Lattice& lattice, const 
   std::ranges::sort(keyed, {}, key);
   const auto twice = std::ranges::adjacent_find(keyed, {}, key);
   if (twice != keyed.end()) {
-    return base::bad_input(fmt::format("two modules in the cell {}, expected one",
-                                       model::text(twice->second.place())));
+    return base::bad_input(
+        fmt::format("the cell {} is listed twice", model::text(twice->second.place())));
   }
   std::ranges::transform(keyed, records.begin(), [](const auto& one) { return one.second; });
   return std::nullopt;

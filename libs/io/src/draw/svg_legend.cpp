@@ -44,8 +44,8 @@ std::string load_text(const Scene& scene) {
   }
   if (!assessment.worst) {
     return assessment.load_ratio_range.high < verdict::kLoadRatioTie
-               ? "no connection is pulled apart"
-               : "no connection is known to be pulled apart";
+               ? "no connection is in tension"
+               : "no connection is known to be in tension";
   }
   if (*assessment.load_ratio_max < kNoLoad) {
     return "no connection carries 0.01 of its strength";

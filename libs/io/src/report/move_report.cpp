@@ -237,12 +237,10 @@ std::string move_text(const MoveReport& report) {
     }
   }
   if (load_ratio_of(plan)) {
-    text +=
-        fmt::format("  load ratio  {} at most on the way\n", beside_one(*load_ratio_of(plan), 4));
+    text += fmt::format("  load ratio  largest {}\n", beside_one(*load_ratio_of(plan), 4));
   }
   if (margin_of(plan)) {
-    text += fmt::format("  margin      {} mm at least on the way\n",
-                        host::significant(*margin_of(plan), 4));
+    text += fmt::format("  margin      smallest {} mm\n", host::significant(*margin_of(plan), 4));
   }
   return text + fmt::format("  examined    {} in {:.3g} s\n",
                             host::counted(plan.state_count, "move"), report.seconds);

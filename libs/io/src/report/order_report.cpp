@@ -75,14 +75,14 @@ std::string words(const std::vector<base::Cell>& cells) {
 /// Says with which other ways there is an order, and why not with those of the task.
 std::string way_words(const plan::OrderTask& task, const plan::ReachRule& other) {
   if (!other.source) {
-    return fmt::format("  help        only the ways bar it: with --reach {} there is an order\n",
+    return fmt::format("  suggestion  only the ways bar it: with --reach {} there is an order\n",
                        plan::name(other.reach));
   }
   const base::Cell& source = *task.rule.source;
   const bool is_taken =
       std::ranges::find(task.target.existing, source) != task.target.existing.end();
   return fmt::format(
-      "  help        only the ways from {}{} bar it: with --source {},{},{} there is an order\n",
+      "  suggestion  only the ways from {}{} bar it: with --source {},{},{} there is an order\n",
       model::text(source), is_taken ? ", a cell of the target," : "", other.source->x,
       other.source->y, other.source->z);
 }
@@ -92,12 +92,12 @@ std::string help_words(const OrderReport& report) {
     return "";
   }
   if (!report.help) {
-    return "  help        no single support and no few temporary modules found that would "
-           "suffice\n";
+    return "  suggestion  none: no single support and no few temporary modules were found that "
+           "would suffice\n";
   }
   const plan::Help& help = *report.help;
   const std::string pieces =
-      help.in_pieces ? "  help        in several pieces there is an order: seek it with --pieces\n"
+      help.in_pieces ? "  suggestion  in several pieces there is an order: seek it with --pieces\n"
                      : "";
   if (help.rule) {
     return way_words(report.task, *help.rule) + pieces;
@@ -106,12 +106,11 @@ std::string help_words(const OrderReport& report) {
   if (!is_support && help.temporary.empty()) {
     return pieces;
   }
-  return fmt::format("  help        {}: {}\n",
-                     is_support ? "with a support in this cell there is an order"
-                                : "with these modules, attached on the way and detached at the "
-                                  "end, there is an order",
-                     words(is_support ? help.supports : help.temporary)) +
-         pieces;
+  const std::string line =
+      is_support
+          ? fmt::format("a support in {} makes a safe order possible", words(help.supports))
+          : "add these as temporary modules and remove them at the end: " + words(help.temporary);
+  return fmt::format("  suggestion  {}\n{}", line, pieces);
 }
 
 /// Says how far the search got.
@@ -198,7 +197,7 @@ std::string load_ratio_words(const plan::RobotOrder& result) {
   }
   const std::string largest = beside_one(*result.load_ratio_max, 4);
   if (std::ranges::none_of(result.order.judgements, &plan::Judgement::is_bound)) {
-    return fmt::format("  load ratio  {} at most on the way\n", largest);
+    return fmt::format("  load ratio  largest {}\n", largest);
   }
   return fmt::format(
       "  load ratio  {} is the largest of the states that were solved, no state exceeds {}\n",
@@ -308,7 +307,7 @@ std::string order_text(const OrderReport& report) {
   std::string text = found_words(report) + kept_words(report.kept_count, order.steps.size());
   text += load_ratio_words(report.result);
   if (report.result.margin_min_mm) {
-    text += fmt::format("  margin      {} mm at least on the way\n",
+    text += fmt::format("  margin      smallest {} mm\n",
                         host::significant(*report.result.margin_min_mm, 4));
   }
   return text + examined;

@@ -50,7 +50,7 @@ void write_stability(Out out, const ReportEntry& entry) {
   const verdict::Assessment& assessment = *entry.assessment;
   const verdict::RigidBody& body = assessment.simplified;
   const bool is_doubtful = assessment.verdict == verdict::Verdict::kUndecided;
-  // What the model-based check agrees with, or not.
+  // What the elastic model also says stable with, or not.
   const bool is_said_stable = assessment.contact_model == verdict::ContactModel::kBonded
                                   ? assessment.is_stable
                                   : assessment.rigid.holds();
@@ -71,11 +71,12 @@ void write_stability(Out out, const ReportEntry& entry) {
     fmt::format_to(out, "  stability   {}{}", word, rigid_text(assessment.rigid));
   }
   if (!assessment.model.is_settled) {
-    fmt::format_to(out, "; the model-based check has no answer\n");
+    fmt::format_to(out, "; the elastic model has no answer\n");
   } else if (assessment.model.is_stable == is_said_stable) {
-    fmt::format_to(out, "; the model-based check agrees\n");
+    fmt::format_to(out, "; the elastic model also says {}\n",
+                   is_said_stable ? "stable" : "unstable");
   } else {
-    fmt::format_to(out, "; the model-based check says {}\n",
+    fmt::format_to(out, "; the elastic model says {}\n",
                    assessment.model.is_stable ? "stable" : "unstable");
   }
 }
@@ -84,7 +85,7 @@ void write_loads(Out out, const model::Robot& robot, const verdict::Assessment& 
                  bool is_deformed) {
   if (assessment.load_ratio_max && !assessment.worst) {
     const bool is_known = assessment.load_ratio_range.high < verdict::kLoadRatioTie;
-    fmt::format_to(out, "  load ratio  no connection is {}pulled apart\n",
+    fmt::format_to(out, "  load ratio  no connection is {}in tension\n",
                    is_known ? "" : "known to be ");
     return;
   }

@@ -216,8 +216,8 @@ std::optional<base::Error> find_stray(const RobotState& after, const model::Step
           return attached.contains(after.module(index).cell);
         })) {
       return fault_in(Stage::kConnect,
-                      fmt::format("the module that is attached at {} touches neither the robot nor "
-                                  "a new module that does",
+                      fmt::format("the module that is attached at {} is not next to the robot, "
+                                  "directly or through other new modules",
                                   text(after.module(piece.front()).cell)));
     }
   }

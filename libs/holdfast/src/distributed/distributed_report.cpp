@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include "distributed_parts.hpp"
+#include "distributed/distributed_parts.hpp"
 #include "holdfast/distributed.hpp"
 #include "holdfast/io/beside_one.hpp"
 #include "report_entry.hpp"

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "distributed_parts.hpp"
+#include "distributed/distributed_parts.hpp"
 #include "holdfast/mechanics/connector.hpp"
 
 namespace holdfast {

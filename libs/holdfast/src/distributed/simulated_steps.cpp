@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "distributed_parts.hpp"
+#include "distributed/distributed_parts.hpp"
 #include "report_entry.hpp"
 
 namespace holdfast {
