@@ -541,11 +541,9 @@ class Robot:
 
     def save(self, path: Path) -> None:
         """Writes holdfast JSON, or VisibleSim XML to a file that ends in .xml."""
-        if os.fsdecode(path).endswith('.xml'):
-            _core.write_file(path, self.visiblesim())
-        else:
-            _core.expect_ending(path, 'structure')
-            _core.write_file(path, self.json())
+        _core.expect_ending(path, 'structure')
+        is_xml = os.fsdecode(path).lower().endswith('.xml')
+        _core.write_file(path, self.visiblesim() if is_xml else self.json())
 
     def __len__(self) -> int:
         """How many modules there are, planned ones too."""

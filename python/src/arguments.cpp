@@ -41,7 +41,7 @@ void expect_ending(const std::string& path, std::string_view kind) {
                             : kind == "svg" ? FileFormat::kSvg
                             : kind == "vtu" ? FileFormat::kVtu
                             : kind == "pvd" ? FileFormat::kPvd
-                                            : FileFormat::kHoldfastJson;
+                                            : FileFormat::kPlan;
   take(find_foreign_ending(format, path), path);
 }
 

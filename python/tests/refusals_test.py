@@ -119,19 +119,22 @@ SAVERS = {
     'save_vtu': (lambda path: ROBOT.check().save_vtu(path), "VTK's XML format", ['.vtu']),
     'save_vtk': (lambda path: holdfast.steps(ROBOT).save_vtk(path), 'a list of .vtu files',
                  ['.pvd']),
-    'save': (ROBOT.save, 'holdfast JSON', ['.json', '.xml']),
+    'save': (ROBOT.save, 'holdfast JSON or VisibleSim XML', ['.json', '.xml', '.XML']),
     'animate': (lambda path: holdfast.animate([ROBOT.check()], path), None, ['.gif', '.html'])}
 ENDINGS = ['.json', '.csv', '.svg', '.vtu', '.pvd', '.html', '.htm', '.holdfast', '.xml', '.png',
            '.PNG', '.pdf', '.jpg', '.gif', '.vtk', '.stl', '.XML']
+# What tells the format when it is known; where it is chosen by the ending it has to be.
+CHOSEN_BY_ENDING = ['save_figure', 'save']
 
 
 @pytest.mark.parametrize('name', SAVERS)
 def test_what_a_file_is_called_is_what_is_written(name, tmp_path):
     save, written, own = SAVERS[name]
-    for ending in set(ENDINGS) - set(own):
+    unknown = ['.xyzzy'] if name in CHOSEN_BY_ENDING else []
+    for ending in {*ENDINGS, *unknown} - set(own):
         path = tmp_path / f'robot{ending}'
         text = refuses(lambda: save(path))
-        endings = {'save_figure': '.svg, .png or .pdf'}.get(name, own[0])
+        endings = {'save_figure': '.svg, .png or .pdf', 'save': '.json or .xml'}.get(name, own[0])
         said = f'what is written is {written}, whose files end in {endings}' if written else (
             'expected a name that ends in .gif or .html')
         assert text == f'{path}: {said}'

@@ -593,7 +593,19 @@ for arguments in "check $safe --svg a.jpg" "check $safe --vtk a.vtk" "check $saf
   expect_exit 64 $arguments
   expect_line err 'what is written is '
 done
-expect_exit 0 check "$safe" --svg a.picture --json plain
+# An ending that tells nothing is refused where it is to tell the format, whatever its letters.
+for arguments in "check $safe --svg a.picture" "generate cube 2 -o a.xyzzy" \
+  "order $repository/scenarios/plan/counterweight.json -o a.xyzzy"; do
+  # shellcheck disable=SC2086
+  expect_exit 64 $arguments
+  expect_line err 'what is written is .*, whose files end in .* or '
+done
+[ ! -e a.xyzzy ] || fault "a file of no known format was written"
+expect_exit 0 generate cube 2 -o a.XML
+grep -q '<world' a.XML || fault "a file that ends in .XML is not XML"
+expect_exit 0 convert a.XML a.JSON
+grep -q '"holdfast-structure"' a.JSON || fault "a file that ends in .JSON is not JSON"
+expect_exit 0 check "$safe" --svg plain --json report.txt
 
 # Figures: PNG and PDF where librsvg is there, else a word about it; options of the picture.
 code=0

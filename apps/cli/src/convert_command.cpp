@@ -80,10 +80,10 @@ int write_description(const io::Document& document, const ConvertArguments& opti
 }
 
 int run(const ConvertArguments& options) {
-  const bool to_json = options.to.ends_with(".json");
-  const bool to_binary = options.to.ends_with(".holdfast");
+  const bool to_json = has_ending(options.to, ".json");
+  const bool to_binary = has_ending(options.to, ".holdfast");
   const auto description = find_description(options.to);
-  if (!to_json && !to_binary && !description && !options.to.ends_with(".xml")) {
+  if (!to_json && !to_binary && !description && !has_ending(options.to, ".xml")) {
     throw UsageError(
         fmt::format("{}: the ending says the format: expected .json (holdfast JSON), .xml "
                     "(VisibleSim XML), .holdfast (binary), .urdf or .sdf",

@@ -25,13 +25,13 @@ int run(const GenerateArguments& options) {
   if (!document) {
     throw UsageError(document.error().message);
   }
-  if (options.to.ends_with(".holdfast")) {
+  if (has_ending(options.to, ".holdfast")) {
     const auto structure = io::make_binary(document.value());
     const auto write = [&](std::ostream& out) { io::write_binary(out, structure.value()); };
     return write_or_complain(options.to, write) ? kExitSafe : kExitBadInput;
   }
-  const std::string text = options.to.ends_with(".xml") ? io::write_visiblesim(document.value())
-                                                        : io::write_json(document.value());
+  const std::string text = has_ending(options.to, ".xml") ? io::write_visiblesim(document.value())
+                                                          : io::write_json(document.value());
   return write_or_complain(options.to, text) ? kExitSafe : kExitBadInput;
 }
 

@@ -17,6 +17,7 @@ struct Endings {
   FileFormat format;
   std::string_view name;
   std::vector<std::string_view> own;
+  bool is_told_by_ending = false;  ///< So that one that none of them has says nothing.
 
   bool takes(std::string_view ending) const { return std::ranges::find(own, ending) != own.end(); }
 };
@@ -24,12 +25,11 @@ struct Endings {
 const std::vector<Endings>& formats() {
   static const std::vector<Endings> all = {
       {FileFormat::kJson, "JSON", {".json"}},
-      {FileFormat::kStructure, "a structure", {".json", ".xml", ".holdfast"}},
-      {FileFormat::kHoldfastJson, "holdfast JSON", {".json"}},
-      {FileFormat::kPlan, "holdfast JSON or VisibleSim XML", {".json", ".xml"}},
+      {FileFormat::kStructure, "a structure", {".json", ".xml", ".holdfast"}, true},
+      {FileFormat::kPlan, "holdfast JSON or VisibleSim XML", {".json", ".xml"}, true},
       {FileFormat::kCsv, "CSV", {".csv"}},
       {FileFormat::kSvg, "SVG", {".svg"}},
-      {FileFormat::kFigure, "SVG, PNG or PDF", {".svg", ".png", ".pdf"}},
+      {FileFormat::kFigure, "SVG, PNG or PDF", {".svg", ".png", ".pdf"}, true},
       {FileFormat::kVtu, "VTK's XML format", {".vtu"}},
       {FileFormat::kPvd, "a list of .vtu files", {".pvd"}},
       {FileFormat::kHtml, "HTML", {".html", ".htm"}}};
@@ -72,6 +72,7 @@ std::optional<base::Error> find_foreign_ending(FileFormat format, std::string_vi
   const std::string ending = ending_of(path);
   const auto own = std::ranges::find(formats(), format, &Endings::format);
   const bool is_foreign =
+      (own->is_told_by_ending && !ending.empty()) ||
       std::ranges::find(kOtherEndings, ending) != std::end(kOtherEndings) ||
       std::ranges::any_of(formats(), [&](const Endings& other) { return other.takes(ending); });
   if (!is_foreign || own->takes(ending)) {

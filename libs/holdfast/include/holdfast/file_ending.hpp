@@ -13,10 +13,9 @@
 namespace holdfast {
 
 enum class FileFormat : std::uint8_t {
-  kJson,          ///< Reports.
-  kHoldfastJson,  ///< Structures.
-  kPlan,          ///< Structures with steps: holdfast JSON or VisibleSim XML, as the ending says.
-  kStructure,     ///< The same, VisibleSim's XML or a binary structure, as the ending says.
+  kJson,       ///< Reports.
+  kPlan,       ///< Structures with steps: holdfast JSON or VisibleSim XML, as the ending says.
+  kStructure,  ///< The same, VisibleSim's XML or a binary structure, as the ending says.
   kCsv,
   kSvg,
   kFigure,  ///< SVG, PNG or PDF, as the ending says.
@@ -35,7 +34,8 @@ bool has_ending(std::string_view path, std::string_view ending);
 bool has_ending_of(FileFormat format, std::string_view path);
 
 /// Returns an error if a file's name ends as files of another format do: nobody can read an SVG
-/// that is called arm.png. Other endings, and none, are allowed.
+/// that is called arm.png. Other endings are allowed where the ending tells no format; none is,
+/// always.
 std::optional<base::Error> find_foreign_ending(FileFormat format, std::string_view path);
 
 }  // namespace holdfast
