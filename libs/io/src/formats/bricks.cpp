@@ -17,43 +17,38 @@ namespace {
 /// Longer bricks are no bricks.
 constexpr std::int32_t kBrickLengthMax = 64;
 
-struct NumberedBrick {
-  std::int32_t number;
-  BrickSize size;
-};
-
-/// The bricks of StableLego by their `brick_id`.
-constexpr auto kStableLego = std::to_array<NumberedBrick>({{1, {2, 2}},
-                                                           {2, {2, 4}},
-                                                           {3, {2, 6}},
-                                                           {4, {1, 8}},
-                                                           {5, {1, 4}},
-                                                           {6, {1, 6}},
-                                                           {9, {1, 2}},
-                                                           {10, {1, 1}},
-                                                           {12, {2, 2}}});
+/// The bricks of StableLego by their `brick_id`; the first is a weight as large as a brick.
+constexpr auto kStableLego = std::to_array<LibraryBrick>({{1, {2, 2}, 200},
+                                                          {2, {2, 4}},
+                                                          {3, {2, 6}},
+                                                          {4, {1, 8}},
+                                                          {5, {1, 4}},
+                                                          {6, {1, 6}},
+                                                          {9, {1, 2}},
+                                                          {10, {1, 1}},
+                                                          {12, {2, 2}}});
 
 /// LDraw's plain bricks by the number of the part; its longer side lies along x.
-constexpr auto kLDraw = std::to_array<NumberedBrick>({{3005, {1, 1}},
-                                                      {3004, {2, 1}},
-                                                      {3622, {3, 1}},
-                                                      {3010, {4, 1}},
-                                                      {3009, {6, 1}},
-                                                      {3008, {8, 1}},
-                                                      {6111, {10, 1}},
-                                                      {6112, {12, 1}},
-                                                      {2465, {16, 1}},
-                                                      {3003, {2, 2}},
-                                                      {3002, {3, 2}},
-                                                      {3001, {4, 2}},
-                                                      {2456, {6, 2}},
-                                                      {3007, {8, 2}},
-                                                      {3006, {10, 2}}});
+constexpr auto kLDraw = std::to_array<LibraryBrick>({{3005, {1, 1}},
+                                                     {3004, {2, 1}},
+                                                     {3622, {3, 1}},
+                                                     {3010, {4, 1}},
+                                                     {3009, {6, 1}},
+                                                     {3008, {8, 1}},
+                                                     {6111, {10, 1}},
+                                                     {6112, {12, 1}},
+                                                     {2465, {16, 1}},
+                                                     {3003, {2, 2}},
+                                                     {3002, {3, 2}},
+                                                     {3001, {4, 2}},
+                                                     {2456, {6, 2}},
+                                                     {3007, {8, 2}},
+                                                     {3006, {10, 2}}});
 
 template <std::size_t N>
-std::optional<BrickSize> find_brick(const std::array<NumberedBrick, N>& list, std::int32_t number) {
-  const auto found = std::ranges::find(list, number, &NumberedBrick::number);
-  return found == list.end() ? std::nullopt : std::optional(found->size);
+const LibraryBrick* find_brick(const std::array<LibraryBrick, N>& list, std::int32_t number) {
+  const auto* const found = std::ranges::find(list, number, &LibraryBrick::number);
+  return found == list.end() ? nullptr : found;
 }
 
 /// Reads "2x4 (0,1,2)"; none if a line is anything else.
@@ -86,7 +81,7 @@ constexpr double kBrickHeight = 24;
 /// Places the bricks of LDraw on a grid that begins at the first one.
 class LDrawGrid {
  public:
-  explicit LDrawGrid(ForeignReading& reading) : reading_(reading) {}
+  LDrawGrid(ForeignReading& reading, BrickPile& pile) : reading_(reading), pile_(pile) {}
 
   /// Reads a line that places a part: 1 COLOUR x y z a b c d e f g h i PART.
   void read(const std::vector<std::string_view>& row, std::size_t line) {
@@ -101,8 +96,8 @@ class LDrawGrid {
     }
     const std::string_view name = row.back();
     const auto part = parse_number<std::int32_t>(name.substr(0, name.find('.')));
-    const auto size = part ? find_brick(kLDraw, *part) : std::nullopt;
-    if (!size) {
+    const LibraryBrick* const brick = part ? find_brick(kLDraw, *part) : nullptr;
+    if (brick == nullptr) {
       reading_.fail({base::ErrorCode::kUnsupported,
                      fmt::format("the part {} is unknown, expected a plain brick, such as "
                                  "3001.dat",
@@ -110,7 +105,7 @@ class LDrawGrid {
                      fmt::format("line {}", line)});
       return;
     }
-    const auto turned = turned_size(numbers, *size);
+    const auto turned = turned_size(numbers, brick->size);
     if (!turned) {
       reading_.fail_at(line, "a part is turned otherwise than by right angles about the vertical");
       return;
@@ -157,26 +152,19 @@ class LDrawGrid {
       }
       cell[i] = static_cast<std::int32_t>(steps);
     }
-    add_brick(reading_, {cell[0], cell[1], cell[2]}, size);
+    pile_.add({cell[0], cell[1], cell[2]}, size);
   }
 
   ForeignReading& reading_;
+  BrickPile& pile_;
   bool has_first_ = false;
   std::array<double, 3> first_{};  ///< Corner of the first brick.
 };
 
 }  // namespace
 
-std::optional<BrickSize> stable_lego_brick(std::int32_t number) {
+const LibraryBrick* find_stable_lego_brick(std::int32_t number) {
   return find_brick(kStableLego, number);
-}
-
-void add_brick(ForeignReading& reading, const base::Cell& corner, const BrickSize& size) {
-  for (std::int32_t y = 0; y < size.along_y; ++y) {
-    for (std::int32_t x = 0; x < size.along_x; ++x) {
-      reading.add(corner.x + x, corner.y + y, corner.z);
-    }
-  }
 }
 
 bool is_brick_text(std::string_view text, std::string_view ending) {
@@ -194,6 +182,7 @@ void read_brick_text(ForeignReading& reading) {
     return;
   }
   Lines lines(reading.text);
+  BrickPile pile(reading);
   for (auto line = lines.next(); line && !reading.has_failed(); line = lines.next()) {
     const auto brick = text_brick(*line);
     if (!brick) {
@@ -203,8 +192,9 @@ void read_brick_text(ForeignReading& reading) {
       return;
     }
     reading.line = lines.number();
-    add_brick(reading, brick->corner, brick->size);
+    pile.add(brick->corner, brick->size);
   }
+  pile.finish(BrickGround::kBasePlate);
 }
 
 bool is_ldraw(std::string_view /*text*/, std::string_view ending) {
@@ -217,7 +207,8 @@ void read_ldraw(ForeignReading& reading) {
     return;
   }
   Lines lines(reading.text);
-  LDrawGrid grid(reading);
+  BrickPile pile(reading);
+  LDrawGrid grid(reading, pile);
   std::size_t file_count = 0;
   for (auto line = lines.next(); line && !reading.has_failed(); line = lines.next()) {
     const std::vector<std::string_view> row = split_row(*line);
@@ -229,6 +220,7 @@ void read_ldraw(ForeignReading& reading) {
                     fmt::format("line {}", lines.number())});
     }
   }
+  pile.finish(BrickGround::kFloor);
 }
 
 }  // namespace holdfast::io

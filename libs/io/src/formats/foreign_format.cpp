@@ -17,8 +17,7 @@ namespace holdfast::io {
 namespace {
 
 constexpr std::string_view kBricksLost =
-    "that bricks are rigid, have studs above and below only, and are not joined side by side: "
-    "their cells are, so a verdict is one about cubes";
+    "colours, and that bricks side by side press each other: their sides are open";
 
 /// The first row that recognises a file reads it: what is sure comes first.
 constexpr auto kImporters = std::to_array<Importer>(
@@ -36,14 +35,16 @@ constexpr auto kImporters = std::to_array<Importer>(
        "corner of a cell"},
       is_obj,
       read_obj},
-     {{"LDraw", ".ldr .mpd", "bricks, one cell for each stud and height of a brick", kBricksLost},
+     {{"LDraw", ".ldr .mpd",
+       "plain bricks, each a rigid body of one module for each stud, on a floor", kBricksLost},
       is_ldraw,
       read_ldraw},
-     {{"BrickGPT text", ".txt", "lines such as 2x4 (0,0,0), one cell for each stud", kBricksLost},
+     {{"BrickGPT text", ".txt", "lines such as 2x4 (0,0,0), each such a body, on a base plate",
+       kBricksLost},
       is_brick_text,
       read_brick_text},
-     {{"StableLego", ".json", "bricks by number with \"brick_id\", one cell for each stud",
-       kBricksLost},
+     {{"StableLego", ".json",
+       "bricks by number with \"brick_id\", each such a body, on a base plate", kBricksLost},
       is_stable_lego,
       read_json_cells},
      {{"RoFI voxels", ".json", "\"bodies\" with \"pos\", one cell for each half of a module",
@@ -84,6 +85,9 @@ void take_ground(ForeignReading& reading) {
   const std::vector<ModuleEntry>& modules = reading.document.modules;
   const auto lowest = std::ranges::min_element(
       modules, {}, [](const ModuleEntry& module) { return module.cell.z; });
+  if (!reading.document.extension.has_floor) {
+    return;
+  }
   reading.document.support_z = lowest->cell.z;
   if (lowest->cell.z != 0 && !reading.options.support) {
     reading.warn_of_all(

@@ -185,6 +185,7 @@ class JsonCells {
 
   /// Bricks by number, whose sizes StableLego keeps in a library.
   void read_bricks(const Json& root, const JsonPlace& top) {
+    BrickPile pile(reading_);
     for (const auto& item : root.items()) {
       const Json& entry = item.value();
       const JsonPlace place = top.at(item.key());
@@ -196,11 +197,11 @@ class JsonCells {
       const auto number = [&](const char* key) {
         return values_.integer(entry[key], place.at(key), kCoordinateRange);
       };
-      const auto size = stable_lego_brick(number("brick_id"));
+      const LibraryBrick* const brick = find_stable_lego_brick(number("brick_id"));
       const bool is_turned = entry.contains("ori") && number("ori") == 1;
       const base::Cell corner = {number("x"), number("y"), number("z")};
       take_failure();
-      if (!reading_.has_failed() && !size) {
+      if (!reading_.has_failed() && brick == nullptr) {
         reading_.fail({base::ErrorCode::kUnsupported,
                        fmt::format("the brick_id {} is not in StableLego's library",
                                    entry["brick_id"].dump()),
@@ -209,8 +210,10 @@ class JsonCells {
       if (reading_.has_failed()) {
         return;
       }
-      add_brick(reading_, corner, is_turned ? BrickSize{size->along_y, size->along_x} : *size);
+      const BrickSize& size = brick->size;
+      pile.add(corner, is_turned ? BrickSize{size.along_y, size.along_x} : size, brick->mass_g);
     }
+    pile.finish(BrickGround::kBasePlate);
   }
 
   ForeignReading& reading_;
