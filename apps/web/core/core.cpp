@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -422,21 +423,29 @@ Reply try_places(const Request& request) {
   return out;
 }
 
+/// Whether a text is in one of the formats that are written too, and are text.
+bool is_written(std::string_view text, const std::string& ending) {
+  return !text.starts_with(io::kBinaryMagic) && io::find_foreign_format(text, ending) == nullptr;
+}
+
 /// Integers: x, y, z and Role of each module. Numbers: the material. Cells that are no robot yet
 /// can be opened and mended; cells that the page cannot hold as they are, two modules in one, get
-/// the program's error.
-Reply open_text(std::string_view text) {
-  const auto read = io::read_document(text);
+/// the program's error. Before the text stand the ending of the file's name, a blank, the edge of a
+/// module in the unit of a mesh, 0 if none is known, and a zero. `base` is
+/// the document as JSON where the text is in a format that is read and not written, else empty.
+Reply open_text(std::string_view file) {
+  const std::size_t zero = file.find('\0');
+  HOLDFAST_CHECK(zero != std::string_view::npos);
+  const std::size_t blank = file.find(' ');
+  const std::string ending(file.substr(0, blank));
+  const double pitch = std::strtod(std::string(file.substr(blank, zero - blank)).c_str(), nullptr);
+  const std::string_view text = file.substr(zero + 1);
+  const auto read = io::read_document(
+      text, {.ending = ending, .mesh_pitch = pitch > 0 ? std::optional(pitch) : std::nullopt});
   if (!read) {
     return failure(read.error());
   }
   const io::Document& document = read.value().document;
-  if (document.extension.pitch_mm) {
-    return failure({.code = base::ErrorCode::kUnsupported,
-                    .message = "the pitch differs by direction, expected one number: the page "
-                               "draws all modules as long as wide",
-                    .where = "/material/pitch_mm"});
-  }
   if (has_double_cell(document)) {
     const auto robot = io::make_robot(document);
     HOLDFAST_CHECK(!robot);
@@ -447,6 +456,7 @@ Reply open_text(std::string_view text) {
                    {"description", document.description},
                    {"support_z", document.support_z},
                    {"more", more_of(document)},
+                   {"base", is_written(text, ending) ? "" : io::write_json(document)},
                    {"later_steps", document.extension.plan.size() +
                                        (document.steps.empty() ? 0 : document.steps.size() - 1)},
                    {"warnings", read.value().warnings}});

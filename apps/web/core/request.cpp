@@ -83,6 +83,19 @@ void forget_absent_pairs(io::Document& document) {
   });
 }
 
+/// Makes lengths of modules by direction, of which the page has the ratios, those of the material,
+/// whose pitch is the least of them.
+void take_pitches(io::Document& document) {
+  if (auto& pitches = document.extension.pitch_mm) {
+    const double least = *std::min_element(pitches->begin(), pitches->end());
+    if (least != document.material.pitch_mm) {
+      for (double& pitch : *pitches) {
+        pitch *= document.material.pitch_mm / least;
+      }
+    }
+  }
+}
+
 /// Takes what the request says beyond cells and material.
 std::optional<base::Error> take_more(std::string_view more, io::Document& document) {
   io::Attributes obstacle_list = std::move(document.extension.obstacle_list);
@@ -95,12 +108,17 @@ std::optional<base::Error> take_more(std::string_view more, io::Document& docume
     return read.error();
   }
   const io::Document& general = read.value().document;
-  if (!(general.material == Material{})) {
+  Material stated = general.material;
+  if (general.extension.pitch_mm) {
+    stated.pitch_mm = Material{}.pitch_mm;  // The least of them.
+  }
+  if (!(stated == Material{})) {
     return base::bad_input("the material and gravity straight down are numbers of the request");
   }
   document.is_default_modulus_stated = general.is_default_modulus_stated;
   document.extension = general.extension;
   document.extension.obstacle_list = std::move(obstacle_list);
+  take_pitches(document);
   take_own(own_by_cell(general), document);
   forget_absent_pairs(document);
   return std::nullopt;

@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vocabulary.hpp"
 
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+#include <string>
 
 namespace holdfast::web {
 namespace {
@@ -97,6 +101,16 @@ Json lattices_json() {
   return list;
 }
 
+/// How files that are read end.
+Json endings_json() {
+  std::set<std::string> endings = {".json", ".xml", ".holdfast"};
+  for (const io::ForeignFormat& format : io::foreign_formats()) {
+    std::istringstream list{std::string(format.endings)};
+    endings.insert(std::istream_iterator<std::string>(list), {});
+  }
+  return endings;
+}
+
 }  // namespace
 
 sim::LinkModel link_of(std::int32_t value) {
@@ -108,7 +122,8 @@ sim::LinkModel link_of(std::int32_t value) {
 std::string vocabulary_json() {
   const Json vocabulary = {{"material", material_json()}, {"phases", phases_json()},
                            {"methods", methods_json()},   {"links", links_json()},
-                           {"limits", limits_json()},     {"lattices", lattices_json()}};
+                           {"limits", limits_json()},     {"lattices", lattices_json()},
+                           {"endings", endings_json()}};
   return vocabulary.dump();
 }
 

@@ -249,7 +249,7 @@ function begin(): void {
   byId('help').onclick = actions['?'];
   const challenges = new ChallengePanel(app);
   byId('gallery-open').onclick = () => openGallery(bench, keeper, (challenge) => void challenges.begin(challenge));
-  byId('new').onclick = () => bench.history.replace(t('beginning anew'), new EditedRobot(bench.robot.lattice));
+  byId('new').onclick = () => bench.history.replace(t('beginning anew'), new EditedRobot(bench.robot.lattice.unstretched));
   byId('save').onclick = () => byId<HTMLDialogElement>('takeaway').showModal();
   for (const button of document.querySelectorAll<HTMLButtonElement>('[data-save]')) {
     button.onclick = () => {

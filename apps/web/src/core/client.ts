@@ -45,8 +45,8 @@ export class CoreClient {
   private nextId = 0;
   private waiting = new Map<number, Waiting>();
 
-  open(text: Uint8Array): Promise<OpenedDocument> {
-    return this.call('open', [text]);
+  open(text: Uint8Array, fileName = '', meshPitch = 0): Promise<OpenedDocument> {
+    return this.call('open', [text, fileName, meshPitch]);
   }
 
   check(robot: RobotData, firstLook = false): Promise<Answer> {

@@ -102,6 +102,8 @@ export interface Vocabulary {
   /** Which limit of a connection may be reached. */
   limits: string[];
   lattices: LatticeTable[];
+  /** Of names of files that are read. */
+  endings: string[];
 }
 
 export interface OpenedDocument {
@@ -111,6 +113,8 @@ export interface OpenedDocument {
   later_steps: number;
   /** JSON of what it says beyond cells and material. */
   more: string;
+  /** The whole as JSON, of a format that is not written; else ''. */
+  base: string;
   warnings: string[];
   modules: Int32Array;
   material: Float64Array;

@@ -125,9 +125,14 @@ export class Core {
     return JSON.parse(this.call('vocabulary', new Uint8Array()).text) as Vocabulary;
   }
 
-  /** Reads a file of either format. Throws CoreError. */
-  open(text: Uint8Array): OpenedDocument {
-    const reply = this.call('open', text);
+  /** Reads a file of any format; the ending of its name says which where its first letters do not, and the edge of a module in the unit of a mesh. Throws CoreError. */
+  open(text: Uint8Array, fileName = '', meshPitch = 0): OpenedDocument {
+    const ending = /\.[^. \0]*$/.exec(fileName)?.[0].toLowerCase() ?? '';
+    const before = new TextEncoder().encode(`${ending} ${meshPitch}\0`);
+    const input = new Uint8Array(before.length + text.length);
+    input.set(before);
+    input.set(text, before.length);
+    const reply = this.call('open', input);
     const head = JSON.parse(reply.text) as Omit<OpenedDocument, 'modules' | 'material'>;
     return { ...head, modules: reply.integers, material: reply.numbers };
   }

@@ -125,7 +125,7 @@ export class EditedRobot {
 
   /** The height of the floor, in pitches. */
   get floorHeight(): number {
-    return this.supportZ * this.lattice.layerHeight - 0.5;
+    return this.supportZ * this.lattice.layerHeight - this.lattice.halves[this.lattice.down];
   }
 
   static from(modules: Int32Array, lattice = CUBIC): EditedRobot {
@@ -154,6 +154,9 @@ export class EditedRobot {
   inLattice(lattice: Lattice): EditedRobot {
     const robot = EditedRobot.from(this.toModules(), lattice);
     robot.takeSettings(this);
+    const { material, ...others } = this.surroundings;
+    const { pitch_mm: _, ...stated } = material ?? {};
+    robot.surroundings = Object.keys(stated).length > 0 ? { ...others, material: stated } : others;
     const { name, base, laterSteps } = this;
     return Object.assign(robot, { name, base, laterSteps, isEdited: true });
   }

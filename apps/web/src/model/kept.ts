@@ -95,9 +95,9 @@ export class Kept {
 
   /** A robot of its own, or, in the tab that has kept it last, the same. */
   restore(entry: KeptRobot): EditedRobot {
-    const lattice = entry.lattice === undefined ? CUBIC : latticeOf(entry.lattice);
-    const robot = EditedRobot.from(Int32Array.from(entry.modules), lattice);
     const { name, supportZ, base, surroundings = NO_SURROUNDINGS, laterSteps = 0 } = entry;
+    const lattice = entry.lattice === undefined ? CUBIC : latticeOf(entry.lattice);
+    const robot = EditedRobot.from(Int32Array.from(entry.modules), lattice?.of(surroundings.material?.pitch_mm));
     const material = Float64Array.from(entry.material);
     Object.assign(robot, { name, supportZ, base, surroundings, laterSteps, material });
     if (entry.id === this.tab.getItem(TAB)) {

@@ -7,7 +7,7 @@ import { plus, type Cell } from './cell';
 
 export type LatticeName = 'cubic' | 'face-centred' | 'hexagonal' | 'hexagonal-prism';
 
-/** A point or a vector of the global frame, in pitches. */
+/** A point or a vector of the global frame, in pitches, the least of them where they differ by direction. */
 export type Place = readonly [x: number, y: number, z: number];
 
 export type Shape = 'cube' | 'sphere' | 'disc' | 'prism';
@@ -41,16 +41,23 @@ export const minus = (a: Place, b: Place): Place => [a[0] - b[0], a[1] - b[1], a
 interface Wall {
   /** Axial, to that node. */
   step: Cell;
+  /** To that node. */
   normal: Place;
+  /** What the scalar product with `normal` is on the wall: half the square of its length. */
+  reach: number;
 }
+
+const UNSTRETCHED: Place = [1, 1, 1];
 
 export class Lattice {
   readonly name: LatticeName;
   readonly title: string;
   readonly shape: Shape;
   readonly down: number;
-  /** Through the facet of each direction, straight down included. */
+  /** Through the facet of each direction, of length one, straight down included. */
   readonly units: readonly Place[];
+  /** From the node to that facet. */
+  readonly halves: readonly number[];
   /** By direction; more where modules of one layer stand beside another layer without touching it. */
   readonly walls: readonly Wall[];
   /** Axial steps to all cells that have to be taken for a module to be out of sight; none: it never is. */
@@ -58,16 +65,30 @@ export class Lattice {
   /** Names of the directions, straight down included. */
   readonly sides: readonly string[];
 
-  constructor(private readonly table: LatticeTable) {
+  private readonly basis: [Place, Place, Place];
+
+  /** `stretch`: by how much longer modules are along each axis than along the shortest. */
+  constructor(
+    private readonly table: LatticeTable,
+    readonly stretch: Place = UNSTRETCHED,
+  ) {
     const { name, steps, down } = table;
+    this.basis = table.basis.map((vector) => vector.map((value, k) => value * stretch[k])) as unknown as [Place, Place, Place];
     this.name = name;
     this.title = LOOKS[name].title;
     this.shape = LOOKS[name].shape;
     this.down = down;
-    const units = steps.map((step) => this.placeOfAxial(step));
+    const ways = steps.map((step) => this.placeOfAxial(step));
+    const lengths = ways.map((way) => Math.hypot(...way));
+    const units = ways.map((way, i) => (isOne(lengths[i]) ? way : (way.map((value) => value / lengths[i]) as unknown as Place)));
     this.units = down < steps.length ? units : [...units, [0, 0, -1]];
+    this.halves = this.units.map((_, i) => (i >= steps.length || isOne(lengths[i]) ? 0.5 : lengths[i] / 2));
     const layers: Cell[] = this.shape === 'disc' ? [[0, 1, 0], [0, -1, 0]] : [];
-    this.walls = [...steps, ...layers].map((step) => ({ step, normal: this.placeOfAxial(step) }));
+    this.walls = [...steps, ...layers].map((step) => {
+      const normal = this.placeOfAxial(step);
+      const square = dot(normal, normal);
+      return { step, normal, reach: isOne(square) ? 0.5 : square / 2 };
+    });
     this.coverSteps = coverSteps(this, steps);
     this.sides = this.units.map(sideName);
   }
@@ -78,7 +99,24 @@ export class Lattice {
 
   /** Between two layers of cells, in pitches. */
   get layerHeight(): number {
-    return this.table.basis[2][2];
+    return this.basis[2][2];
+  }
+
+  /** The same lattice, with modules that are as long as wide. */
+  get unstretched(): Lattice {
+    return latticeOf(this.name)!;
+  }
+
+  /** The same lattice, with modules that are so long along x, y and z. */
+  of(pitches: Place | undefined): Lattice {
+    if (!pitches) {
+      return this;
+    }
+    const least = Math.min(...pitches);
+    const key = `${this.name} ${pitches.map((pitch) => pitch / least)}`;
+    const found = STRETCHED.get(key) ?? new Lattice(this.table, pitches.map((pitch) => pitch / least) as unknown as Place);
+    STRETCHED.set(key, found);
+    return found;
   }
 
   axial([x, y, z]: Cell): Cell {
@@ -105,16 +143,16 @@ export class Lattice {
   }
 
   placeOfAxial([i, j, k]: Cell): Place {
-    const [a, b, c] = this.table.basis;
+    const [a, b, c] = this.basis;
     return [i * a[0] + j * b[0] + k * c[0], i * a[1] + j * b[1] + k * c[1], i * a[2] + j * b[2] + k * c[2]];
   }
 
   /** The axial coordinates of the node that is nearest to a point. */
   nearestAxial([x, y, z]: Place): Cell {
-    const [, b, c] = this.table.basis;
+    const [a, b, c] = this.basis;
     const k = z / c[2];
     const j = (y - k * c[1]) / b[1];
-    const i = x - j * b[0] - k * c[0];
+    const i = (x - j * b[0] - k * c[0]) / a[0];
     let axial: Cell = [Math.round(i), Math.round(j), Math.round(k)];
     for (let wall; (wall = this.wallBefore(axial, [x, y, z])); ) {
       axial = plus(axial, wall.step);
@@ -151,9 +189,15 @@ export class Lattice {
 
   private wallBefore(axial: Cell, place: Place): Wall | undefined {
     const offset = minus(place, this.placeOfAxial(axial));
-    return this.walls.find(({ normal }) => dot(normal, offset) > 0.5 + 1e-9);
+    return this.walls.find(({ normal, reach }) => dot(normal, offset) > reach + 1e-9);
   }
 }
+
+/** A length that is one but for rounding, as all are where nothing is stretched. */
+const isOne = (length: number) => Math.abs(length - 1) < 1e-9;
+
+/** Those that were asked for, so that equal ones are one object. */
+const STRETCHED = new Map<string, Lattice>();
 
 /** Cubes and prisms are hidden by their neighbours; spheres leave gaps, behind which the next ones have to be. */
 function coverSteps(lattice: Lattice, steps: readonly Cell[]): Cell[] {

@@ -29,7 +29,7 @@ const fits = ({ units, directionCount }: Lattice, turn: Turn) =>
   units.slice(0, directionCount).every((unit) => units.some((other) => distance(turn(unit), other) < 1e-9));
 
 /** Cells turned about the node of the first of them, by a map that fits the lattice. */
-function turned(lattice: Lattice, cells: readonly Cell[], turn: Turn): Cell[] {
+function turned({ unstretched: lattice }: Lattice, cells: readonly Cell[], turn: Turn): Cell[] {
   const centre = lattice.place(cells[0]);
   return cells.map((cell) => {
     const [x, y, z] = turn(minus(lattice.place(cell), centre));

@@ -54,8 +54,11 @@ export interface Surroundings {
   /** Only modules that have something of their own. */
   modules?: readonly OwnModule[];
   steps?: readonly StepEntry[];
-  /** Where somebody states that the elastic modulus is what it is by default; any other is stated anyway. */
-  material?: { elastic_modulus_mpa?: number };
+  /**
+   * Where somebody states that the elastic modulus is what it is by default; any other is stated anyway. Lengths of
+   * modules along x, y and z where they differ, as multiples of the least, which is the material's.
+   */
+  material?: { elastic_modulus_mpa?: number; pitch_mm?: Vector };
 }
 
 export const NO_SURROUNDINGS: Surroundings = {};

@@ -82,7 +82,7 @@ export class Workbench {
   /** Puts the same cells, as an undoable step, into another lattice. */
   setLattice(name: string): void {
     const lattice = latticeOf(name);
-    if (lattice && lattice !== this.robot.lattice) {
+    if (lattice && lattice.name !== this.robot.lattice.name) {
       this.history.replace(t('another lattice: {0}', word(lattice.title)), this.robot.inLattice(lattice));
     }
   }

@@ -130,8 +130,9 @@ export class Holdfast {
       structure instanceof Uint8Array
         ? structure
         : new TextEncoder().encode(typeof structure === 'string' ? structure : JSON.stringify(structure));
-    const { name, modules, material, support_z, more } = this.core.open(bytes);
-    return { name: name || 'robot', modules, material, supportZ: support_z, more, text: new TextDecoder().decode(bytes) };
+    const { name, modules, material, support_z, more, base } = this.core.open(bytes);
+    const text = base || new TextDecoder().decode(bytes);
+    return { name: name || 'robot', modules, material, supportZ: support_z, more, text };
   }
 }
 

@@ -248,6 +248,7 @@ export const SAID_TEXTS = {
   'This browser cannot draw the robot ({0}); this is its report.': 'Ce navigateur ne peut pas dessiner le robot ({0}) ; voici son rapport.',
   'A number is needed here.': 'Il faut un nombre ici.',
   'Ground at z': 'Sol à z',
+  'Edge of a module, in the unit of the mesh (mostly mm)': 'Arête d’un module, dans l’unité du maillage (le plus souvent mm)',
   'Blinky Blocks (Table I)': 'Blinky Blocks (table I)',
   '{0} is not possible: expected {1} to {2}{3}.': '{0} n’est pas possible : de {1} à {2}{3} attendu.',
   '“{0}” is not a number.': '« {0} » n’est pas un nombre.',

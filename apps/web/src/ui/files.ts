@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: The holdfast authors
 // SPDX-License-Identifier: Apache-2.0
+import VOCABULARY from 'virtual:vocabulary';
 import { CoreClient } from '../core/client';
 import { Output, type OpenedDocument } from '../core/types';
 import { EditedRobot } from '../model/edited_robot';
@@ -26,12 +27,12 @@ const client = new CoreClient();
 
 export function robotOf(opened: OpenedDocument, text: string, fallbackName: string): EditedRobot {
   const { lattice, ...surroundings } = JSON.parse(opened.more) as Surroundings;
-  const robot = EditedRobot.from(opened.modules, latticeOf(lattice ?? CUBIC.name));
+  const robot = EditedRobot.from(opened.modules, latticeOf(lattice ?? CUBIC.name)?.of(surroundings.material?.pitch_mm));
   robot.name = opened.name || fallbackName;
   robot.supportZ = opened.support_z;
   robot.material = opened.material;
   robot.surroundings = withoutHead(surroundings);
-  robot.base = text;
+  robot.base = opened.base || text;
   robot.laterSteps = opened.later_steps;
   return robot;
 }
@@ -45,13 +46,15 @@ export async function openText(
   bytes: Uint8Array,
   name: string,
   origin = name,
+  fileName = '',
+  meshPitch = 0,
 ): Promise<boolean> {
   // What is said of the file is not said behind a dialog.
   document.querySelectorAll('dialog[open]').forEach((dialog) => (dialog as HTMLDialogElement).close());
   let note: HTMLElement | undefined;
   const late = setTimeout(() => (note = tell(t('reading {0} …', origin), false, Infinity)), LATE_MS);
   try {
-    const opened = await client.open(bytes).finally(() => clearTimeout(late));
+    const opened = await client.open(bytes, fileName, meshPitch).finally(() => clearTimeout(late));
     const robot = robotOf(opened, new TextDecoder().decode(bytes), name);
     bench.history.replace(t('opening {0}', robot.name || t('a structure')), robot);
     const notes = opened.warnings;
@@ -75,10 +78,22 @@ export async function openFile(bench: Workbench, file: File): Promise<void> {
   }
   try {
     const bytes = new Uint8Array(await file.arrayBuffer());
-    await openText(bench, bytes, file.name.replace(/\.(xml|json)$/i, ''), file.name);
+    const pitch = meshPitchOf(file.name);
+    if (pitch !== undefined) {
+      await openText(bench, bytes, file.name.replace(/\.[^.]*$/, ''), file.name, file.name, pitch);
+    }
   } catch {
     tell(t('{0}: cannot be read', file.name), true);
   }
+}
+
+/** What a mesh is filled with has an edge that only the user knows; undefined: it is not to be opened. */
+function meshPitchOf(fileName: string): number | undefined {
+  if (!/\.(stl|obj)$/i.test(fileName)) {
+    return 0;
+  }
+  const answer = prompt(t('Edge of a module, in the unit of the mesh (mostly mm)'), '40');
+  return answer === null ? undefined : Number(answer.replace(',', '.')) || 0;
 }
 
 export const BROKEN_LINK = t('the link is broken: it may have been cut; nothing was opened');
@@ -91,6 +106,7 @@ export async function openFragment(bench: Workbench): Promise<boolean | undefine
 
 export function listenToFiles(bench: Workbench): void {
   const input = byId<HTMLInputElement>('file');
+  input.accept = VOCABULARY.endings.join();
   byId('open').onclick = () => input.click();
   input.onchange = () => {
     const file = input.files?.[0];

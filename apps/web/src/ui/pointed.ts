@@ -43,7 +43,7 @@ export class Pointed {
     this.unpin();
     this.point(cell, side);
     const place = new Vector3().fromArray(lattice.place(cell));
-    this.tip.pin(side === undefined ? place : place.addScaledVector(new Vector3().fromArray(lattice.units[side]), 0.5));
+    this.tip.pin(side === undefined ? place : place.addScaledVector(new Vector3().fromArray(lattice.units[side]), lattice.halves[side]));
     this.isPinned = true;
     this.pinListeners.forEach((tell) => tell());
   }

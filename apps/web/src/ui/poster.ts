@@ -34,7 +34,9 @@ export function drawPoster(app: App, scaleOf: (ratio: number, width: number) => 
   write([...word.childNodes].map((part) => part.textContent).join('  '), 24, MARGIN + 20, getComputedStyle(word).color, true);
   write(byId('chip-numbers').textContent ?? '', 14, MARGIN + 42, ink);
   const { robot } = app;
-  write([robot.name, t('1 module = {0} mm', digits(String(robot.pitchMm))), 'holdfast'].filter(Boolean).join(' · '), 13, poster.height / ratio - MARGIN, quiet);
+  const edges = new Set(robot.lattice.stretch).size > 1 ? robot.lattice.stretch : [1];
+  const size = edges.map((edge) => digits(String(Number((edge * robot.pitchMm).toPrecision(6))))).join(' × ');
+  write([robot.name, t('1 module = {0} mm', size), 'holdfast'].filter(Boolean).join(' · '), 13, poster.height / ratio - MARGIN, quiet);
   if (!app.view.losses && !app.view.hasOwnColours) {
     drawLegend(context, app, poster.height / ratio - MARGIN - 54, quiet);
   }

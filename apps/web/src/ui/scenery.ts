@@ -27,7 +27,7 @@ export class Scenery {
   show(robot: EditedRobot, finding: Finding | undefined): void {
     const { low, high } = robot.bounds() ?? { low: [0, 0, 0], high: [0, 0, 0] };
     const reach = Math.max(high[0] - low[0], high[1] - low[1]) + 10;
-    this.ground.place(robot.floorHeight, [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2], reach, robot.hasFloor);
+    this.ground.place(robot.floorHeight, [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2], reach, robot.lattice.stretch, robot.hasFloor);
     this.ground.show(robot, finding?.answer?.stability);
     this.obstacles.show(robot);
     this.loads.show(robot);

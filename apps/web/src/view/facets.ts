@@ -144,8 +144,9 @@ export class FacetView {
     for (let i = 0; i < count; ++i) {
       const facet = facetAt(answer, i);
       const normal = robot.lattice.units[facet.direction];
+      const reach = 1.006 * robot.lattice.halves[facet.direction];
       // A little beyond the middle, so that it is seen from outside of a flat face too.
-      values.centre.push(...robot.placeAt(slots[facet.module]).map((value, k) => value + 0.503 * normal[k]));
+      values.centre.push(...robot.placeAt(slots[facet.module]).map((value, k) => value + reach * normal[k]));
       const [x, y] = facetFrame(normal);
       values.across.push(...x.map((value) => half * value));
       values.beside.push(...y.map((value) => half * value));

@@ -14,6 +14,7 @@ import {
 } from 'three';
 import type { Point, Stability } from '../core/types';
 import type { EditedRobot } from '../model/edited_robot';
+import type { Place } from '../model/lattice';
 import { arrow } from './arrow';
 
 /** The ground: a grid, the support polygon, the centre of mass above it, the edge of toppling. */
@@ -22,21 +23,23 @@ const GRID_FRAGMENT = `
 uniform vec3 ink;
 uniform vec2 middle;
 uniform float reach;
+uniform vec2 pitch;
 varying vec2 vAt;
 void main() {
   vec2 cell = abs(fract(vAt) - 0.5);
   vec2 pixel = fwidth(vAt);
   vec2 line = 1.0 - smoothstep(vec2(0.0), pixel * 1.2, 0.5 - cell);
   float density = 1.0 - clamp(max(pixel.x, pixel.y) * 4.0, 0.0, 1.0);
-  float fade = 1.0 - smoothstep(0.3 * reach, reach, distance(vAt, middle));
+  float fade = 1.0 - smoothstep(0.3 * reach, reach, distance(vAt * pitch, middle));
   gl_FragColor = vec4(ink, 0.22 * max(line.x, line.y) * fade * density);
 }`;
 
 const GRID_VERTEX = `
+uniform vec2 pitch;
 varying vec2 vAt;
 void main() {
   vec4 at = modelMatrix * vec4(position, 1.0);
-  vAt = at.xy + 0.5;
+  vAt = at.xy / pitch + 0.5;
   gl_Position = projectionMatrix * viewMatrix * at;
 }`;
 
@@ -70,20 +73,21 @@ export class Ground {
       fragmentShader: GRID_FRAGMENT,
       transparent: true,
       depthWrite: false,
-      uniforms: { ink: { value: [0, 0, 0] }, middle: { value: [0, 0] }, reach: { value: 20 } },
+      uniforms: { ink: { value: [0, 0, 0] }, middle: { value: [0, 0] }, reach: { value: 20 }, pitch: { value: [1, 1] } },
     });
     this.grid = new Mesh(new PlaneGeometry(1, 1), material);
     this.grid.renderOrder = -2;
     this.group.add(this.grid, this.answer);
   }
 
-  /** Where the ground is and how far the grid goes. */
-  place(z: number, middle: Point, reach: number, isThere = true): void {
+  /** Where the ground is, how far the grid goes, and how large its cells are. */
+  place(z: number, middle: Point, reach: number, [x, y]: Place, isThere = true): void {
     this.grid.visible = isThere;
     this.group.position.z = z;
     this.grid.position.set(middle[0], middle[1], -0.01);
     this.grid.scale.setScalar(2.2 * reach);
-    this.grid.material.uniforms.middle.value = [middle[0] + 0.5, middle[1] + 0.5];
+    this.grid.material.uniforms.middle.value = [middle[0] + x / 2, middle[1] + y / 2];
+    this.grid.material.uniforms.pitch.value = [x, y];
     this.grid.material.uniforms.reach.value = reach;
     this.grid.material.uniforms.ink.value = this.colours.ink;
   }

@@ -350,6 +350,10 @@ void main() {
 #endif
 }`;
 
+/** For the shader: of which the scalar product with a point of a module is 1/2 on the wall of each direction. */
+const seamAxes = (lattice: Lattice) =>
+  lattice.units.slice(0, 12).flatMap((unit, i) => unit.map((value) => (0.5 * value) / lattice.halves[i]));
+
 export class ModuleMesh {
   readonly mesh: Mesh<InstancedBufferGeometry, ShaderMaterial>;
   private capacity = 0;
@@ -376,7 +380,7 @@ export class ModuleMesh {
 
   constructor(opacity = 1) {
     this.uniforms.opacity.value = opacity;
-    this.uniforms.units.value.set(CUBIC.units.flat());
+    this.uniforms.units.value.set(seamAxes(CUBIC));
     this.mesh = new Mesh(new InstancedBufferGeometry(), this.material());
     this.mesh.frustumCulled = false;
     this.reserve(64);
@@ -409,7 +413,7 @@ export class ModuleMesh {
   setLattice(lattice: Lattice): void {
     if (lattice !== this.lattice) {
       this.lattice = lattice;
-      this.uniforms.units.value.fill(0).set(lattice.units.slice(0, 12).flat());
+      this.uniforms.units.value.fill(0).set(seamAxes(lattice));
       this.mesh.material = this.material();
       this.capacity = 0;
       this.reserve(64);

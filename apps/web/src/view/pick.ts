@@ -46,8 +46,8 @@ const pointAt = (ray: Ray, distance: number): Place => [
 ];
 
 /** Where a ray is inside of a box around nodes, with a cell of room on every side. */
-function stretch(ray: Ray, { low, high }: Box): [enter: number, leave: number] {
-  const ROOM = 1;
+function passage(ray: Ray, { low, high }: Box, stretch: Place): [enter: number, leave: number] {
+  const ROOM = Math.max(...stretch);
   const [origin, direction] = [ray.origin.toArray(), ray.direction.toArray()];
   let [enter, leave] = [0, Infinity];
   for (let k = 0; k < 3; ++k) {
@@ -63,7 +63,7 @@ function walk(robot: EditedRobot, ray: Ray, box: Box, section?: Section): Hit | 
   const { lattice } = robot;
   const { walls } = lattice;
   const sight = ray.direction.toArray() as unknown as Place;
-  const [enter, leave] = stretch(ray, box);
+  const [enter, leave] = passage(ray, box, lattice.stretch);
   if (!(enter <= leave)) {
     return undefined;
   }
@@ -81,7 +81,7 @@ function walk(robot: EditedRobot, ray: Ray, box: Box, section?: Section): Hit | 
     let next = Infinity;
     let through = 0;
     for (let wall = 0; wall < walls.length; ++wall) {
-      const distance = (0.5 + dot(walls[wall].normal, start)) / slopes[wall];
+      const distance = (walls[wall].reach + dot(walls[wall].normal, start)) / slopes[wall];
       if (slopes[wall] > 1e-12 && distance < next) {
         next = distance;
         through = wall;

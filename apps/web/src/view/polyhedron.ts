@@ -7,27 +7,29 @@ import { dot, type Lattice, type Place } from '../model/lattice';
 
 /** The corners of each wall's face around the node, counterclockwise as seen from outside. */
 export function cellFaces(lattice: Lattice): Place[][] {
-  const normals = lattice.walls.map(({ normal }) => normal);
-  return normals.map((normal) =>
-    normals.reduce((polygon, other) => (other === normal ? polygon : cut(polygon, other)), square(normal)),
+  const { walls } = lattice;
+  const wide = WIDE * Math.max(...lattice.stretch);
+  return walls.map((wall) =>
+    walls.reduce((polygon, other) => (other === wall ? polygon : cut(polygon, other)), square(wall.normal, wide)),
   );
 }
 
 const WIDE = 4;
 
 /** A large square halfway along a normal. */
-function square(normal: Place): Place[] {
-  const helper: Place = Math.abs(normal[2]) > 0.9 ? [1, 0, 0] : [0, 0, 1];
-  const u = unit(cross(helper, normal));
-  const v = cross(normal, u);
+function square(normal: Place, wide: number): Place[] {
+  const along = unit(normal);
+  const helper: Place = Math.abs(along[2]) > 0.9 ? [1, 0, 0] : [0, 0, 1];
+  const u = unit(cross(helper, along));
+  const v = cross(along, u);
   const at = (a: number, b: number) =>
-    normal.map((value, i) => value / 2 + WIDE * (a * u[i] + b * v[i])) as unknown as Place;
+    normal.map((value, i) => value / 2 + wide * (a * u[i] + b * v[i])) as unknown as Place;
   return [at(-1, -1), at(1, -1), at(1, 1), at(-1, 1)];
 }
 
 /** What of a convex polygon is on the node's side of a wall [Sutherland 1974]. */
-function cut(polygon: readonly Place[], normal: Place): Place[] {
-  const beyond = polygon.map((corner) => dot(normal, corner) - 0.5);
+function cut(polygon: readonly Place[], { normal, reach }: Lattice['walls'][number]): Place[] {
+  const beyond = polygon.map((corner) => dot(normal, corner) - reach);
   return polygon.flatMap((corner, i) => {
     const next = (i + 1) % polygon.length;
     const kept = beyond[i] <= 1e-9 ? [corner] : [];

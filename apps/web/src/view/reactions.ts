@@ -30,7 +30,7 @@ export function reactionsOf(robot: EditedRobot, answer: Answer, slots: Int32Arra
     const { module, direction, state, pressed, push } = facetAt(answer, i);
     const normal = new Vector3().fromArray(robot.lattice.units[direction]);
     const along = new Vector3().fromArray(answer.facetForces, FACET_FIELDS * i + 1);
-    const place = new Vector3().fromArray(robot.placeAt(slots[module])).addScaledVector(normal, 0.5);
+    const place = new Vector3().fromArray(robot.placeAt(slots[module])).addScaledVector(normal, robot.lattice.halves[direction]);
     facetFrame(robot.lattice.units[direction]).forEach((axis, k) => place.addScaledVector(new Vector3().fromArray(axis), half * pressed[k]));
     return { module, state, force: along.addScaledVector(normal, -push), place };
   });

@@ -17,6 +17,28 @@ const HEXAGON_CORNER = 1 / Math.sqrt(3);
 const ARC_PARTS = 4;
 
 export function shapeGeometry(lattice: Lattice): BufferGeometry {
+  const geometry = unstretched(lattice);
+  const { stretch } = lattice;
+  if (stretch.every((factor) => factor === 1)) {
+    return geometry;
+  }
+  const { normal, face } = geometry.attributes;
+  for (let i = 0; face !== undefined && i < face.count; ++i) {
+    const [across, up] = faceAxes([normal.getX(i), normal.getY(i), normal.getZ(i)]).map((k) => stretch[k]);
+    face.setXYZW(i, face.getX(i) * across, face.getY(i) * up, face.getZ(i) * across, face.getW(i) < 0 ? -1 : face.getW(i) * up);
+  }
+  return geometry.scale(...(stretch as [number, number, number]));
+}
+
+/** The axes along which the two coordinates on a face count: of cubes, and of prisms, which are stretched along z alone. */
+function faceAxes(normal: Place): [across: number, up: number] {
+  if (Math.abs(normal[2]) > 0.5) {
+    return [0, 1];
+  }
+  return Math.abs(normal[0]) > 0.99 ? [1, 2] : [0, 2];
+}
+
+function unstretched(lattice: Lattice): BufferGeometry {
   switch (lattice.shape) {
     case 'cube':
       return cube(lattice);
