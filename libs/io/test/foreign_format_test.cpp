@@ -176,6 +176,22 @@ struct Sample {
   Cells cells;
 };
 
+/// Two bricks of 2 x 4 studs side by side, one over both, one of 2 x 2 on top, turned.
+Cells wall_cells() {
+  Cells cells;
+  for (int y = 0; y < 2; ++y) {
+    for (int x = 0; x < 8; ++x) {
+      cells.insert({x, y, 0});
+    }
+    for (int x = 2; x < 6; ++x) {
+      cells.insert({x, y, 1});
+    }
+    cells.insert({3, y, 2});
+    cells.insert({4, y, 2});
+  }
+  return cells;
+}
+
 const std::vector<Sample>& samples() {
   static const std::vector<Sample> list = {
       {"arm.csv", "list of cells", {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {2, 0, 1}}},
@@ -207,22 +223,10 @@ const std::vector<Sample>& samples() {
       {"squares.json",
        "compacting-squares",
        {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 0, 1}, {1, 0, 2}}},
-      // Two bricks of 2 x 4 studs side by side, one over both, one of 2 x 2 on top, turned.
-      {"wall.ldr", "LDraw",
-       [] {
-         Cells cells;
-         for (int y = 0; y < 2; ++y) {
-           for (int x = 0; x < 8; ++x) {
-             cells.insert({x, y, 0});
-           }
-           for (int x = 2; x < 6; ++x) {
-             cells.insert({x, y, 1});
-           }
-           cells.insert({3, y, 2});
-           cells.insert({4, y, 2});
-         }
-         return cells;
-       }()},
+      {"tee.scen", "scenario", {{1, 0, 0}, {1, 0, 1}, {0, 0, 2}, {1, 0, 2}, {2, 0, 2}, {0, 0, 3}}},
+      {"hook.record", "PIVOTING-CUBES record", {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 2}}},
+      {"pair.rofi", "RoFI configuration", {}},
+      {"wall.ldr", "LDraw", wall_cells()},
       {"bricks.txt", "BrickGPT text",
        [] {
          Cells cells = {{0, 4, 2}, {0, 5, 2}};
@@ -272,6 +276,10 @@ TEST(ForeignFormat, has_a_sample_for_each_row_whose_cells_are_read) {
     EXPECT_TRUE(format->takes(ending));
     seen.insert(format->name);
     const auto read = read_as(text, ending, 40);
+    if (one.cells.empty()) {  // A format without cells, which the message says.
+      EXPECT_NE(message_of(read).find("expected its voxels as JSON"), std::string::npos);
+      continue;
+    }
     ASSERT_TRUE(read);
     const bool has_plate = !read.value().document.extension.has_floor;
     EXPECT_EQ(cells_of(read), has_plate ? with_base_plate(one.cells) : one.cells);
@@ -332,6 +340,22 @@ TEST(ForeignFormat, is_known_without_an_ending_where_its_letters_say_it) {
             (Cells{{1, 1, 0}}));
 }
 
+/// Files of planners in their other forms: without a heading, flat or not, with remarks.
+TEST(ForeignFormat, takes_the_start_of_moves) {
+  EXPECT_EQ(cells_of(read_as("7, 0, 0, 255, 85 // group\n\n00, 7, 4, 5, 1,\n1, 7, 4, 5, 2\n\n"
+                             "*00, 5, 1, 0, 0\n",
+                             ".scen")),
+            (Cells{{4, 5, 1}, {4, 5, 2}}));
+  EXPECT_EQ(cells_of(read_as("2\n['Cube[(0, 4)]', 'Cube[(1,4)]']\n[Cube[(0, 4)], Cube[(0, 5)]]\n",
+                             ".record")),
+            (Cells{{0, 0, 4}, {1, 0, 4}}));
+  const auto tee = read_as(sample("tee.scen"), ".scen");
+  ASSERT_TRUE(tee);
+  for (const ModuleEntry& module : tee.value().document.modules) {
+    EXPECT_EQ(module.color, module.cell.z < 2 ? (Color{200, 60, 40}) : (Color{40, 90, 200}));
+  }
+}
+
 TEST(ForeignFormat, rests_on_its_lowest_layer_unless_an_option_says_another) {
   const std::string text = "0,0,3\n0,0,4\n";
   const auto read = read_as(text, ".csv");
@@ -381,6 +405,21 @@ TEST(ForeignFormat, is_refused_with_one_line_where_something_is_wrong) {
       {read_as("1 4 0 0 0 1 0 0 0 1 0 0 0 1 3001.dat\n1 4 0 -8 0 1 0 0 0 1 0 0 0 1 3001.dat\n",
                ".ldr"),
        "line 2: a brick at 0 -8 0 is not on the grid"},
+      {read_as("a\nb\nCATOM\n\n0, 1, 2, 3, 90\n\n0, 0, 1, 1, 1\n", ".scen"),
+       "line 3: the modules are 'CATOM', expected CUBE"},
+      {read_as("a\nb\nCUBE\n\n0, 1, 2, 3, 90\n\n0, 0, 1, 1\n", ".scen"),
+       "line 7: expected five integers, a module, its group, x, y, z, found '0, 0, 1, 1'"},
+      {read_as("a\nb\nCUBE\n\n0, 1, 2, 3\n\n0, 0, 1, 1, 1\n", ".scen"),
+       "line 5: expected five integers, a group, its colour and its size"},
+      {read_as("a\nb\nCUBE\n", ".scen"), "expected modules, found none"},
+      {read_as("4\n['Cube[(0,0,0)]']\n", ".record"), "line 1: expected the number of dimensions"},
+      {read_as("2\n['Cube[(0,0,0)]']\n", ".record"),
+       "line 2: expected cubes such as ['Cube[(0, 0)]']"},
+      {read_as("3\n['Cube[(0,0,0)]', 'Cube[(0,0", ".record"),
+       "line 2: expected cubes such as ['Cube[(0, 0, 0)]'], found '0,0'"},
+      {read_as("3\n['Cube[(0,0,0)]'", ".record"), "line 2: expected cubes such as"},
+      {read_as(R"({"modules": [{"id": 1}], "moduleJoints": []})", ".json"),
+       "has angles of joints and no places of modules"},
       {read_as(R"([[0, 0, 0], [0, 0]])", ".json"), "/1: expected three integers"},
       {read_as(R"({"1": {"x": 0, "y": 0, "z": 0, "brick_id": 77, "ori": 0}})", ".json"),
        "/1: the brick_id 77 is not in"},
