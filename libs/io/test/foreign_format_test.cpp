@@ -22,6 +22,7 @@
 
 #include "document_support.hpp"
 #include "holdfast/base/rng.hpp"
+#include "holdfast/model/mass.hpp"
 #include "seeds.hpp"
 
 namespace holdfast::io {
@@ -509,6 +510,65 @@ TEST(ForeignFormat, survives_files_that_are_cut_or_damaged) {
       damaged[random.next() % text.size()] ^= static_cast<char>(1U << random.next() % 8);
       try_it(damaged, ending);
     }
+  }
+}
+
+/// A palette file of kinds that the gate's colours, 1 and 2, may have.
+std::string palette_text(const std::string& entries) {
+  return fmt::format(
+      R"({{"format": "holdfast-palette", "version": 1, "palette": {{{}}},
+           "kinds": {{"post": {{"mass_kg": 0.2}}, "bar": {{"strength_lateral_n": 3}}}}}})",
+      entries);
+}
+
+TEST(ForeignFormat, makes_voxels_of_a_kind_by_a_palette) {
+  const auto palette = read_palette(palette_text(R"("1": "post", "2": "bar", "9": "post")"));
+  ASSERT_TRUE(palette) << palette.error().message;
+  const auto read = read_document(sample("gate.vox"), {.palette = palette.value()});
+  ASSERT_TRUE(read) << read.error().message;
+  const Document& document = read.value().document;
+  ASSERT_EQ(document.extension.own.size(), document.modules.size());
+  for (const OwnParameters& own : document.extension.own) {
+    EXPECT_EQ(own.kind, document.modules[own.module].cell.z < 2 ? "post" : "bar");
+  }
+  // The four posts weigh 0.2 kg each, the bar what the material says.
+  const auto robot = make_robot(document);
+  ASSERT_TRUE(robot);
+  EXPECT_NEAR(model::mass_of(robot.value()).kg, 4 * 0.2 + 3 * 0.06106, 1e-12);
+  const auto back = read_json(write_json(document));
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back.value().document, document);
+}
+
+TEST(ForeignFormat, refuses_palettes_that_leave_a_voxel_open) {
+  const auto only = read_palette(palette_text(R"("1": "post")"));
+  ASSERT_TRUE(only);
+  EXPECT_NE(message_of(read_document(sample("gate.vox"), {.palette = only.value()}))
+                .find("the palette has no kind for the colour 2, of the voxel ("),
+            std::string::npos);
+  EXPECT_NE(message_of(read_document("0,0,0\n", {.ending = ".csv", .palette = only.value()}))
+                .find("a palette is given, expected a file of MagicaVoxel"),
+            std::string::npos);
+  const std::pair<std::string, const char*> wrong[] = {
+      {palette_text(R"("1": "pole")"), "/palette/1: the kind 'pole' is not in"},
+      {palette_text(R"("0": "post")"), "/palette/0: expected different indices"},
+      {palette_text(R"("256": "post")"), "/palette/256: expected different indices"},
+      {palette_text(R"("1": "post", "01": "bar")"), "expected different indices"},
+      {palette_text(R"("red": "post")"), "/palette/red: expected different indices"},
+      {palette_text(R"("1": 7)"), "/palette/1: "},
+      {R"({"format": "holdfast-palette", "version": 1, "palette": {}})", "kinds"},
+      {R"({"kinds": {}, "palette": {}})", "format"},
+      {R"({"format": "holdfast-palette", "version": 1, "palette": {"1": "a"},
+           "kinds": {"a": {"mass_kg": -1}}})",
+       "/kinds/a/mass_kg: "},
+      {R"({"format": "holdfast-palette", "version": 1, "palette": {}, "kind": {}})", "kind"},
+      {"[1, 2]", "expected an object, found an array"},
+      {"[", ""}};
+  for (const auto& [text, expected] : wrong) {
+    const auto read = read_palette(text);
+    ASSERT_FALSE(read) << text;
+    EXPECT_NE((read.error().where + ": " + read.error().message).find(expected), std::string::npos)
+        << read.error().where << ": " << read.error().message;
   }
 }
 

@@ -21,7 +21,8 @@ constexpr std::string_view kBricksLost =
 
 /// The first row that recognises a file reads it: what is sure comes first.
 constexpr auto kImporters = std::to_array<Importer>(
-    {{{"MagicaVoxel", ".vox", "one module for each voxel, in the colour of its palette",
+    {{{"MagicaVoxel", ".vox",
+       "one module for each voxel, in the colour of its palette; of a kind with --palette",
        "materials, layers, the places of models in a scene; files of several models are refused"},
       is_vox,
       read_vox},
