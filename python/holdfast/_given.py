@@ -88,10 +88,13 @@ def obstacle_list(obstacles: Any) -> Any:
 
 
 def reading(lattice: str = '', robot: str = '', allow_unknown: bool = False,
-         supports: Union[int, str, None] = None, pitch: Optional[float] = None) -> dict[str, Any]:
+         supports: Union[int, str, None] = None, pitch: Optional[float] = None,
+         palette: Optional[Mapping[str, Any]] = None) -> dict[str, Any]:
     """What readers are told beside the file."""
+    head = {'format': 'holdfast-palette', 'version': 1}
     return {'lattice': lattice, 'robot': robot, 'allow_unknown': allow_unknown,
-            'supports': supports, 'pitch': pitch}
+            'supports': supports, 'pitch': pitch,
+            'palette': '' if palette is None else json_of({**head, **palette})}
 
 
 def level(supports: Any, cells: Any) -> Any:

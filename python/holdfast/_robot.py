@@ -122,7 +122,8 @@ class Robot:
     @classmethod
     def from_file(cls, path: Union[Path, Readable], *, lattice: str = '', robot: str = '',
                   allow_unknown: bool = False, supports: Union[int, str, None] = None,
-                  pitch: Optional[float] = None) -> Robot:
+                  pitch: Optional[float] = None,
+                  palette: Optional[Mapping[str, Any]] = None) -> Robot:
         """Reads VisibleSim XML, holdfast JSON, version 1 or 2, a binary structure, or a file of
         another program: `foreign_formats` lists them. `path` may be a file object. What is in
         `warnings` is a `RobotWarning` as well.
@@ -130,9 +131,10 @@ class Robot:
         `lattice` and `robot` say what the file leaves open. A key of holdfast JSON that is unknown
         is an error, unless it begins with ``x-``; with `allow_unknown` it is ignored and stands in
         `warnings`. `supports` is the layer z whose modules rest on the ground, or ``lowest``,
-        whatever the file says; `pitch` the edge of a module in the unit of a mesh.
+        whatever the file says; `pitch` the edge of a module in the unit of a mesh; `palette` a
+        dictionary of the `kinds` of voxels and of the `palette`, which kind each colour is.
         """
-        return read_robot(path, reading(lattice, robot, allow_unknown, supports, pitch))
+        return read_robot(path, reading(lattice, robot, allow_unknown, supports, pitch, palette))
 
     @classmethod
     def from_text(cls, text: str, *, name: str = '', lattice: str = '', robot: str = '',
@@ -610,9 +612,9 @@ def read_robot(source: Union[Path, Readable], how: dict[str, Any],
 
 def load(path: Union[Path, Readable], *, lattice: str = '', robot: str = '',
          allow_unknown: bool = False, supports: Union[int, str, None] = None,
-         pitch: Optional[float] = None) -> Robot:
+         pitch: Optional[float] = None, palette: Optional[Mapping[str, Any]] = None) -> Robot:
     """Reads a robot, see `Robot.from_file`."""
-    return read_robot(path, reading(lattice, robot, allow_unknown, supports, pitch))
+    return read_robot(path, reading(lattice, robot, allow_unknown, supports, pitch, palette))
 
 
 def foreign_formats() -> list[dict[str, str]]:

@@ -20,7 +20,7 @@ SharedStructure share(base::Result<Structure> made, std::string_view file = {}) 
 }
 
 /// What readers are told beside the file: a dictionary with the keys lattice, robot, allow_unknown,
-/// supports and pitch.
+/// supports, pitch and palette, a text.
 io::ReadOptions reading(const py::dict& given) {
   const py::handle lattice = given["lattice"];
   io::ReadOptions options{.robot = utf8_of(given["robot"], "robot"),
@@ -31,6 +31,9 @@ io::ReadOptions reading(const py::dict& given) {
   }
   if (const py::handle pitch = given["pitch"]; !pitch.is_none()) {
     options.mesh_pitch = number_of(pitch, "pitch", 1e-9, 1e9);
+  }
+  if (const std::string palette = utf8_of(given["palette"], "palette"); !palette.empty()) {
+    options.palette = take(io::read_palette(palette), "palette");
   }
   if (const std::string name = utf8_of(lattice, "lattice"); !name.empty()) {
     options.lattice = take(io::find_lattice(name));

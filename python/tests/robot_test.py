@@ -8,6 +8,7 @@ import json
 import os
 import pathlib
 import pickle
+import struct
 
 import holdfast
 import numpy as np
@@ -401,6 +402,14 @@ def test_lists_of_cells_and_meshes_are_robots(tmp_path):
     assert holdfast.load(mesh, pitch=40).cells.tolist() == [[0, 0, 0], [0, 0, 1]]
     with pytest.raises(holdfast.Error, match='a mesh needs the edge of a module'):
         holdfast.load(mesh)
+    voxels = tmp_path / 'one.vox'
+    xyzi = b'XYZI' + struct.pack('<3I4B', 8, 0, 1, 0, 0, 0, 7)
+    main = b'MAIN' + struct.pack('<2I', 0, len(xyzi))
+    voxels.write_bytes(b'VOX ' + struct.pack('<I', 150) + main + xyzi)
+    palette = {'kinds': {'battery': {'mass_kg': 0.2}}, 'palette': {'7': 'battery'}}
+    assert '"kind": "battery"' in holdfast.load(voxels, palette=palette).json()
+    with pytest.raises(holdfast.Error, match='no kind for the colour 7'):
+        holdfast.load(voxels, palette={**palette, 'palette': {}})
 
 
 def test_the_lowest_layer_may_stand():

@@ -35,8 +35,8 @@ bool is_printable_line(std::string_view text) {
 }
 
 [[maybe_unused]] base::Result<ReadDocument> read_by_ending(std::string_view bytes) {
-  constexpr std::string_view kEndings[] = {".csv", ".xyz", ".txt", ".json", ".vox",
-                                           ".stl", ".obj", ".ldr", ""};
+  constexpr std::string_view kEndings[] = {".csv", ".xyz", ".txt", ".json", ".vox",   ".stl",
+                                           ".obj", ".ldr", "",     ".scen", ".record"};
   if (bytes.empty()) {
     return read_document(bytes);
   }

@@ -15,15 +15,16 @@ _holdfast() {
         --set) : ;;
         --support-z) : ;;
         --pitch) : ;;
+        --palette) files=1 ;;
         --safety-factor|--margin) : ;;
         --json) files=1 ;;
-        --csv) files=1 ;;
-        --vtk) files=1 ;;
         --connections) words="all broken" ;;
+        --csv) files=1 ;;
         --svg) files=1 ;;
         --size) : ;;
         --title) : ;;
         --view) words="iso front side top" ;;
+        --vtk) files=1 ;;
         --html) files=1 ;;
         --certificate) files=1 ;;
         --limit-seconds) : ;;
@@ -37,7 +38,7 @@ _holdfast() {
         --lose-seconds) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --json --csv --vtk --connections --svg --size --title --grey --view --no-legend --html --certificate --prove --buckling --limit --limit-seconds --remedies --deformed --up-to --follow --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --cascade -q --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --palette --allow-unknown --safety-factor --margin --json --connections --csv --svg --size --title --grey --view --no-legend --vtk --html --certificate --prove --buckling --limit --limit-seconds --remedies --deformed --up-to --follow --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --cascade -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     steps)
@@ -54,6 +55,7 @@ _holdfast() {
         --set) : ;;
         --support-z) : ;;
         --pitch) : ;;
+        --palette) files=1 ;;
         --safety-factor|--margin) : ;;
         --json) files=1 ;;
         --csv) files=1 ;;
@@ -66,7 +68,7 @@ _holdfast() {
         --vtk) files=1 ;;
         --motions) : ;;
         --threads) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --json --csv --svg --size --title --grey --view --no-legend --step --strip --html --vtk --until-unsafe --exact --motions --verify -q --quiet --threads"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --palette --allow-unknown --safety-factor --margin --json --csv --svg --size --title --grey --view --no-legend --step --strip --html --vtk --until-unsafe --exact --motions --verify -q --quiet --threads"; else files=1; fi ;;
       esac
       ;;
     next)
@@ -76,6 +78,7 @@ _holdfast() {
         --set) : ;;
         --support-z) : ;;
         --pitch) : ;;
+        --palette) files=1 ;;
         --safety-factor|--margin) : ;;
         --scatter) : ;;
         --scatter-common) : ;;
@@ -95,7 +98,7 @@ _holdfast() {
         --seconds) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --json --csv --svg --size --title --grey --view --no-legend --html --limit --exact --seconds -q --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --palette --allow-unknown --safety-factor --margin --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --json --csv --svg --size --title --grey --view --no-legend --html --limit --exact --seconds -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     order)
@@ -130,8 +133,9 @@ _holdfast() {
         --set) : ;;
         --support-z) : ;;
         --pitch) : ;;
+        --palette) files=1 ;;
         --safety-factor|--margin) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --from --continue --at --reach --source --avoid --keep --group --parallel --pieces --reverse --seed --exact --seconds --help-seconds --threads -q --quiet -o --output --json --csv --html --certificate --strength-needed --stream --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --from --continue --at --reach --source --avoid --keep --group --parallel --pieces --reverse --seed --exact --seconds --help-seconds --threads -q --quiet -o --output --json --csv --html --certificate --strength-needed --stream --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --palette --allow-unknown --safety-factor --margin"; else files=1; fi ;;
       esac
       ;;
     move)
@@ -162,8 +166,9 @@ _holdfast() {
         --set) : ;;
         --support-z) : ;;
         --pitch) : ;;
+        --palette) files=1 ;;
         --safety-factor|--margin) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --continue --at --pivot --motions --within --avoid --keep --geometry-only --seed --seconds --threads -q --quiet -o --output --json --csv --html --verify --stream --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --continue --at --pivot --motions --within --avoid --keep --geometry-only --seed --seconds --threads -q --quiet -o --output --json --csv --html --verify --stream --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --robot --lattice --set --support-z --pitch --palette --allow-unknown --safety-factor --margin"; else files=1; fi ;;
       esac
       ;;
     simulate)
@@ -173,6 +178,7 @@ _holdfast() {
         --set) : ;;
         --support-z) : ;;
         --pitch) : ;;
+        --palette) files=1 ;;
         --safety-factor|--margin) : ;;
         --method) words="auto elimination fronts polynomial" ;;
         --link) words="v1 v2 catoms unit" ;;
@@ -198,7 +204,7 @@ _holdfast() {
         --title) : ;;
         --view) words="iso front side top" ;;
         --threads) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --safety-factor --margin --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --steps --stages --next --weaken --json --connections --trace --story --svg --size --title --grey --view --no-legend --threads -q --quiet"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --palette --allow-unknown --safety-factor --margin --method --link --seed --loss --duplicate --reorder --corrupt --jitter --kill --cut --detach --plan --withdraw --attach --steps --stages --next --weaken --json --connections --trace --story --svg --size --title --grey --view --no-legend --threads -q --quiet"; else files=1; fi ;;
       esac
       ;;
     emulate)
@@ -208,6 +214,7 @@ _holdfast() {
         --set) : ;;
         --support-z) : ;;
         --pitch) : ;;
+        --palette) files=1 ;;
         --board) words="v2 v1 v2-256k" ;;
         --image) files=1 ;;
         --pages) files=1 ;;
@@ -227,7 +234,7 @@ _holdfast() {
         --size) : ;;
         --title) : ;;
         --view) words="iso front side top" ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --board --image --pages --bare --seed --kill --reset --cut --flip --plan --withdraw --attach --serial --time --json --connections --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --palette --allow-unknown --board --image --pages --bare --seed --kill --reset --cut --flip --plan --withdraw --attach --serial --time --json --connections --svg --size --title --grey --view --no-legend -q --quiet"; else files=1; fi ;;
       esac
       ;;
     listen)
@@ -244,8 +251,9 @@ _holdfast() {
         --set) : ;;
         --support-z) : ;;
         --pitch) : ;;
+        --palette) files=1 ;;
         --baud) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --baud"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --palette --allow-unknown --baud"; else files=1; fi ;;
       esac
       ;;
     twin)
@@ -256,10 +264,11 @@ _holdfast() {
         --set) : ;;
         --support-z) : ;;
         --pitch) : ;;
+        --palette) files=1 ;;
         --baud) : ;;
         --time) : ;;
         --json) files=1 ;;
-        *) if [[ $current == -* ]]; then words="-h --help --also --robot --lattice --set --support-z --pitch --allow-unknown --baud --time --json -q --quiet"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --also --robot --lattice --set --support-z --pitch --palette --allow-unknown --baud --time --json -q --quiet"; else files=1; fi ;;
       esac
       ;;
     conformance)
@@ -286,7 +295,8 @@ _holdfast() {
         --set) : ;;
         --support-z) : ;;
         --pitch) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown"; else files=1; fi ;;
+        --palette) files=1 ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --palette --allow-unknown"; else files=1; fi ;;
       esac
       ;;
     fit)
@@ -318,8 +328,9 @@ _holdfast() {
         --set) : ;;
         --support-z) : ;;
         --pitch) : ;;
+        --palette) files=1 ;;
         --out) files=1 ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --allow-unknown --out --no-open"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --palette --allow-unknown --out --no-open"; else files=1; fi ;;
       esac
       ;;
   esac

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reading.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace holdfast::cli {
@@ -10,6 +12,27 @@ namespace {
 bool is_given(const CLI::Option& option) {
   return option.count() > 0 && !option.get_lnames().empty() && option.get_group() != kOutputs &&
          !(option.results().size() == 1 && option.results().front() == option.get_default_str());
+}
+
+base::Result<io::VoxelPalette> palette_of(const std::string& file) {
+  const auto text = read_file(file);
+  return text ? io::read_palette(text.value()) : text.error();
+}
+
+void add_palette(CLI::App& command, io::ReadOptions& options) {
+  command
+      .add_option_function<std::string>(
+          "--palette",
+          [&options](const std::string& file) { options.palette = palette_of(file).value(); },
+          "The kinds of modules that voxels (.vox) are by their colour, from a file")
+      ->type_name("FILE")
+      ->check([](const std::string& file) {
+        const auto found = palette_of(file);
+        return found ? std::string()
+                     : fmt::format("{}: {}{}", file,
+                                   found.error().where.empty() ? "" : found.error().where + ": ",
+                                   found.error().message);
+      });
 }
 
 }  // namespace
@@ -85,6 +108,7 @@ void add_reading(CLI::App& command, Reading& reading) {
           "Edge of a module in the unit of a mesh (.stl, .obj) that is filled with modules")
       ->type_name("LENGTH")
       ->check(number_between(1e-9, 1e9));
+  add_palette(command, options);
   command.add_flag(
       "--allow-unknown", options.allow_unknown,
       "Ignore keys of holdfast JSON that are unknown, with a note; without it they are "

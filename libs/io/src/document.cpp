@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "formats/foreign_reading.hpp"
 #include "holdfast/io/binary_structure.hpp"
 #include "holdfast/io/foreign_format.hpp"
 #include "text_input.hpp"
@@ -97,6 +98,9 @@ base::Result<ReadDocument> with_factor(base::Result<ReadDocument> read,
 base::Result<ReadDocument> read_any(std::string_view text, const ReadOptions& options) {
   const auto* const foreign =
       text.starts_with(kBinaryMagic) ? nullptr : find_foreign_format(text, options.ending);
+  if (options.palette && !is_vox(text, options.ending)) {
+    return base::bad_input("a palette is given, expected a file of MagicaVoxel (.vox)");
+  }
   if (foreign != nullptr) {
     return read_foreign(*foreign, text, options);
   }

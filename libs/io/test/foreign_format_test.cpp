@@ -22,6 +22,7 @@
 
 #include "document_support.hpp"
 #include "holdfast/base/rng.hpp"
+#include "holdfast/model/mass.hpp"
 #include "seeds.hpp"
 
 namespace holdfast::io {
@@ -176,6 +177,22 @@ struct Sample {
   Cells cells;
 };
 
+/// Two bricks of 2 x 4 studs side by side, one over both, one of 2 x 2 on top, turned.
+Cells wall_cells() {
+  Cells cells;
+  for (int y = 0; y < 2; ++y) {
+    for (int x = 0; x < 8; ++x) {
+      cells.insert({x, y, 0});
+    }
+    for (int x = 2; x < 6; ++x) {
+      cells.insert({x, y, 1});
+    }
+    cells.insert({3, y, 2});
+    cells.insert({4, y, 2});
+  }
+  return cells;
+}
+
 const std::vector<Sample>& samples() {
   static const std::vector<Sample> list = {
       {"arm.csv", "list of cells", {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {2, 0, 1}}},
@@ -207,22 +224,10 @@ const std::vector<Sample>& samples() {
       {"squares.json",
        "compacting-squares",
        {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 0, 1}, {1, 0, 2}}},
-      // Two bricks of 2 x 4 studs side by side, one over both, one of 2 x 2 on top, turned.
-      {"wall.ldr", "LDraw",
-       [] {
-         Cells cells;
-         for (int y = 0; y < 2; ++y) {
-           for (int x = 0; x < 8; ++x) {
-             cells.insert({x, y, 0});
-           }
-           for (int x = 2; x < 6; ++x) {
-             cells.insert({x, y, 1});
-           }
-           cells.insert({3, y, 2});
-           cells.insert({4, y, 2});
-         }
-         return cells;
-       }()},
+      {"tee.scen", "scenario", {{1, 0, 0}, {1, 0, 1}, {0, 0, 2}, {1, 0, 2}, {2, 0, 2}, {0, 0, 3}}},
+      {"hook.record", "PIVOTING-CUBES record", {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 2}}},
+      {"pair.rofi", "RoFI configuration", {}},
+      {"wall.ldr", "LDraw", wall_cells()},
       {"bricks.txt", "BrickGPT text",
        [] {
          Cells cells = {{0, 4, 2}, {0, 5, 2}};
@@ -272,6 +277,10 @@ TEST(ForeignFormat, has_a_sample_for_each_row_whose_cells_are_read) {
     EXPECT_TRUE(format->takes(ending));
     seen.insert(format->name);
     const auto read = read_as(text, ending, 40);
+    if (one.cells.empty()) {  // A format without cells, which the message says.
+      EXPECT_NE(message_of(read).find("expected its voxels as JSON"), std::string::npos);
+      continue;
+    }
     ASSERT_TRUE(read);
     const bool has_plate = !read.value().document.extension.has_floor;
     EXPECT_EQ(cells_of(read), has_plate ? with_base_plate(one.cells) : one.cells);
@@ -332,6 +341,22 @@ TEST(ForeignFormat, is_known_without_an_ending_where_its_letters_say_it) {
             (Cells{{1, 1, 0}}));
 }
 
+/// Files of planners in their other forms: without a heading, flat or not, with remarks.
+TEST(ForeignFormat, takes_the_start_of_moves) {
+  EXPECT_EQ(cells_of(read_as("7, 0, 0, 255, 85 // group\n\n00, 7, 4, 5, 1,\n1, 7, 4, 5, 2\n\n"
+                             "*00, 5, 1, 0, 0\n",
+                             ".scen")),
+            (Cells{{4, 5, 1}, {4, 5, 2}}));
+  EXPECT_EQ(cells_of(read_as("2\n['Cube[(0, 4)]', 'Cube[(1,4)]']\n[Cube[(0, 4)], Cube[(0, 5)]]\n",
+                             ".record")),
+            (Cells{{0, 0, 4}, {1, 0, 4}}));
+  const auto tee = read_as(sample("tee.scen"), ".scen");
+  ASSERT_TRUE(tee);
+  for (const ModuleEntry& module : tee.value().document.modules) {
+    EXPECT_EQ(module.color, module.cell.z < 2 ? (Color{200, 60, 40}) : (Color{40, 90, 200}));
+  }
+}
+
 TEST(ForeignFormat, rests_on_its_lowest_layer_unless_an_option_says_another) {
   const std::string text = "0,0,3\n0,0,4\n";
   const auto read = read_as(text, ".csv");
@@ -381,6 +406,21 @@ TEST(ForeignFormat, is_refused_with_one_line_where_something_is_wrong) {
       {read_as("1 4 0 0 0 1 0 0 0 1 0 0 0 1 3001.dat\n1 4 0 -8 0 1 0 0 0 1 0 0 0 1 3001.dat\n",
                ".ldr"),
        "line 2: a brick at 0 -8 0 is not on the grid"},
+      {read_as("a\nb\nCATOM\n\n0, 1, 2, 3, 90\n\n0, 0, 1, 1, 1\n", ".scen"),
+       "line 3: the modules are 'CATOM', expected CUBE"},
+      {read_as("a\nb\nCUBE\n\n0, 1, 2, 3, 90\n\n0, 0, 1, 1\n", ".scen"),
+       "line 7: expected five integers, a module, its group, x, y, z, found '0, 0, 1, 1'"},
+      {read_as("a\nb\nCUBE\n\n0, 1, 2, 3\n\n0, 0, 1, 1, 1\n", ".scen"),
+       "line 5: expected five integers, a group, its colour and its size"},
+      {read_as("a\nb\nCUBE\n", ".scen"), "expected modules, found none"},
+      {read_as("4\n['Cube[(0,0,0)]']\n", ".record"), "line 1: expected the number of dimensions"},
+      {read_as("2\n['Cube[(0,0,0)]']\n", ".record"),
+       "line 2: expected cubes such as ['Cube[(0, 0)]']"},
+      {read_as("3\n['Cube[(0,0,0)]', 'Cube[(0,0", ".record"),
+       "line 2: expected cubes such as ['Cube[(0, 0, 0)]'], found '0,0'"},
+      {read_as("3\n['Cube[(0,0,0)]'", ".record"), "line 2: expected cubes such as"},
+      {read_as(R"({"modules": [{"id": 1}], "moduleJoints": []})", ".json"),
+       "has angles of joints and no places of modules"},
       {read_as(R"([[0, 0, 0], [0, 0]])", ".json"), "/1: expected three integers"},
       {read_as(R"({"1": {"x": 0, "y": 0, "z": 0, "brick_id": 77, "ori": 0}})", ".json"),
        "/1: the brick_id 77 is not in"},
@@ -470,6 +510,65 @@ TEST(ForeignFormat, survives_files_that_are_cut_or_damaged) {
       damaged[random.next() % text.size()] ^= static_cast<char>(1U << random.next() % 8);
       try_it(damaged, ending);
     }
+  }
+}
+
+/// A palette file of kinds that the gate's colours, 1 and 2, may have.
+std::string palette_text(const std::string& entries) {
+  return fmt::format(
+      R"({{"format": "holdfast-palette", "version": 1, "palette": {{{}}},
+           "kinds": {{"post": {{"mass_kg": 0.2}}, "bar": {{"strength_lateral_n": 3}}}}}})",
+      entries);
+}
+
+TEST(ForeignFormat, makes_voxels_of_a_kind_by_a_palette) {
+  const auto palette = read_palette(palette_text(R"("1": "post", "2": "bar", "9": "post")"));
+  ASSERT_TRUE(palette) << palette.error().message;
+  const auto read = read_document(sample("gate.vox"), {.palette = palette.value()});
+  ASSERT_TRUE(read) << read.error().message;
+  const Document& document = read.value().document;
+  ASSERT_EQ(document.extension.own.size(), document.modules.size());
+  for (const OwnParameters& own : document.extension.own) {
+    EXPECT_EQ(own.kind, document.modules[own.module].cell.z < 2 ? "post" : "bar");
+  }
+  // The four posts weigh 0.2 kg each, the bar what the material says.
+  const auto robot = make_robot(document);
+  ASSERT_TRUE(robot);
+  EXPECT_NEAR(model::mass_of(robot.value()).kg, 4 * 0.2 + 3 * 0.06106, 1e-12);
+  const auto back = read_json(write_json(document));
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back.value().document, document);
+}
+
+TEST(ForeignFormat, refuses_palettes_that_leave_a_voxel_open) {
+  const auto only = read_palette(palette_text(R"("1": "post")"));
+  ASSERT_TRUE(only);
+  EXPECT_NE(message_of(read_document(sample("gate.vox"), {.palette = only.value()}))
+                .find("the palette has no kind for the colour 2, of the voxel ("),
+            std::string::npos);
+  EXPECT_NE(message_of(read_document("0,0,0\n", {.ending = ".csv", .palette = only.value()}))
+                .find("a palette is given, expected a file of MagicaVoxel"),
+            std::string::npos);
+  const std::pair<std::string, const char*> wrong[] = {
+      {palette_text(R"("1": "pole")"), "/palette/1: the kind 'pole' is not in"},
+      {palette_text(R"("0": "post")"), "/palette/0: expected different indices"},
+      {palette_text(R"("256": "post")"), "/palette/256: expected different indices"},
+      {palette_text(R"("1": "post", "01": "bar")"), "expected different indices"},
+      {palette_text(R"("red": "post")"), "/palette/red: expected different indices"},
+      {palette_text(R"("1": 7)"), "/palette/1: "},
+      {R"({"format": "holdfast-palette", "version": 1, "palette": {}})", "kinds"},
+      {R"({"kinds": {}, "palette": {}})", "format"},
+      {R"({"format": "holdfast-palette", "version": 1, "palette": {"1": "a"},
+           "kinds": {"a": {"mass_kg": -1}}})",
+       "/kinds/a/mass_kg: "},
+      {R"({"format": "holdfast-palette", "version": 1, "palette": {}, "kind": {}})", "kind"},
+      {"[1, 2]", "expected an object, found an array"},
+      {"[", ""}};
+  for (const auto& [text, expected] : wrong) {
+    const auto read = read_palette(text);
+    ASSERT_FALSE(read) << text;
+    EXPECT_NE((read.error().where + ": " + read.error().message).find(expected), std::string::npos)
+        << read.error().where << ": " << read.error().message;
   }
 }
 

@@ -21,7 +21,8 @@ constexpr std::string_view kBricksLost =
 
 /// The first row that recognises a file reads it: what is sure comes first.
 constexpr auto kImporters = std::to_array<Importer>(
-    {{{"MagicaVoxel", ".vox", "one module for each voxel, in the colour of its palette",
+    {{{"MagicaVoxel", ".vox",
+       "one module for each voxel, in the colour of its palette; of a kind with --palette",
        "materials, layers, the places of models in a scene; files of several models are refused"},
       is_vox,
       read_vox},
@@ -57,6 +58,22 @@ constexpr auto kImporters = std::to_array<Importer>(
        "properties other than a colour, and which modules stay where they are"},
       is_pathfinder,
       read_json_cells},
+     {{"RoFI configuration", ".rofi .json",
+       "nothing: it is refused, as it has angles of joints and how modules are docked, no places",
+       "everything; RoFI's own tools make voxels of it, as JSON"},
+      is_rofi_world,
+      refuse_rofi_world},
+     {{"scenario", ".scen",
+       "the cubes that stand before the moves, in the colours of their groups; those with one z "
+       "are an upright wall",
+       "moves, sizes, and which modules stay where they are; catoms and rhombic dodecahedra are "
+       "refused"},
+      is_scenario,
+      read_scenario},
+     {{"PIVOTING-CUBES record", ".record",
+       "the cubes of the second line; those of two dimensions are an upright wall", "moves"},
+      is_record,
+      read_record},
      {{"compacting-squares", ".json", "\"cubes\" of x and y, as an upright wall",
        "nothing but colours"},
       is_squares,

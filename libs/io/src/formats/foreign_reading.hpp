@@ -94,4 +94,14 @@ void read_brick_text(ForeignReading& reading);
 bool is_ldraw(std::string_view text, std::string_view ending);
 void read_ldraw(ForeignReading& reading);
 
+bool is_scenario(std::string_view text, std::string_view ending);
+void read_scenario(ForeignReading& reading);
+
+bool is_record(std::string_view text, std::string_view ending);
+void read_record(ForeignReading& reading);
+
+bool is_rofi_world(std::string_view text, std::string_view ending);
+/// Says why there are no cells in it.
+void refuse_rofi_world(ForeignReading& reading);
+
 }  // namespace holdfast::io

@@ -243,6 +243,21 @@ bool is_stable_lego(std::string_view text, std::string_view ending) {
   return is_cells(text, ending, CellsKind::kBricks);
 }
 
+bool is_rofi_world(std::string_view text, std::string_view ending) {
+  text = trimmed(without_bom(text));
+  if (ending == ".rofi" || !text.starts_with('{') || (!ending.empty() && ending != ".json")) {
+    return ending == ".rofi";
+  }
+  const auto root = parse_json(text);
+  return root && root.value().contains("modules") && root.value().contains("moduleJoints");
+}
+
+void refuse_rofi_world(ForeignReading& reading) {
+  reading.fail({base::ErrorCode::kUnsupported,
+                "a configuration of RoFI has angles of joints and no places of modules, expected "
+                "its voxels as JSON, \"bodies\" with \"pos\""});
+}
+
 void read_json_cells(ForeignReading& reading) {
   const auto root = parse_json(reading.text);
   if (!root) {

@@ -5,6 +5,7 @@
 // of its children, and both. All numbers have the lowest byte first.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -67,6 +68,43 @@ std::optional<VoxChunks> find_chunks(ForeignReading& reading) {
   return found;
 }
 
+/// Takes the kinds of a palette that the user gives.
+void take_kinds(ForeignReading& reading) {
+  if (!reading.options.palette) {
+    return;
+  }
+  const std::vector<KindEntry>& kinds = reading.options.palette->kinds;
+  const auto has_pairs = [](const KindEntry& kind) {
+    return std::ranges::any_of(kind.connectors.parameters, [](const ConnectorParameter& one) {
+      return one.spread == Spread::kPairs;
+    });
+  };
+  if (reading.document.extension.lattice != base::kCubic && std::ranges::any_of(kinds, has_pairs)) {
+    reading.fail({base::ErrorCode::kBadInput,
+                  "the palette has limits by direction, which are those of cubes, but another "
+                  "lattice is asked for"});
+  }
+  reading.document.extension.kinds = kinds;
+}
+
+/// Says of which kind the module added last is, by the index of its colour.
+void take_kind(ForeignReading& reading, std::size_t index) {
+  if (!reading.options.palette || reading.has_failed()) {
+    return;
+  }
+  const auto& kind_of = reading.options.palette->kind_of;
+  const auto found = kind_of.find(static_cast<std::int32_t>(index));
+  const std::size_t module = reading.document.modules.size() - 1;
+  if (found == kind_of.end()) {
+    const base::Cell& cell = reading.document.modules[module].cell;
+    reading.fail({base::ErrorCode::kBadInput,
+                  fmt::format("the palette has no kind for the colour {}, of the voxel ({},{},{})",
+                              index, cell.x, cell.y, cell.z)});
+    return;
+  }
+  reading.document.extension.own.push_back({0, module, found->second, {}});
+}
+
 }  // namespace
 
 bool is_vox(std::string_view text, std::string_view /*ending*/) {
@@ -84,6 +122,7 @@ void read_vox(ForeignReading& reading) {
                               chunks->model_count)});
     return;
   }
+  take_kinds(reading);
   constexpr std::size_t kVoxelBytes = 4;
   const std::string_view voxels = chunks->voxels;
   const std::size_t count = voxels.size() < 4 ? 0 : word_at(voxels, 0);
@@ -103,6 +142,7 @@ void read_vox(ForeignReading& reading) {
                     static_cast<int>(byte_at(chunks->palette, entry + 2))};
     }
     reading.add(byte_at(voxels, at), byte_at(voxels, at + 1), byte_at(voxels, at + 2), color);
+    take_kind(reading, index);
   }
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -123,6 +124,16 @@ struct SupportLevel {
 /// Reads "lowest" or the z of a layer. Error: it is neither.
 base::Result<SupportLevel> find_support_level(std::string_view text);
 
+/// Says of which kind the modules are that voxels become.
+struct VoxelPalette {
+  std::vector<KindEntry> kinds;
+  /// The name of one of the kinds, by the index of a colour in the palette of the file, 1 to 255.
+  std::map<std::int32_t, std::string> kind_of;
+};
+
+/// Reads a palette from JSON. Errors: it is none; it names a kind that it does not have.
+base::Result<VoxelPalette> read_palette(std::string_view text);
+
 /// The values that hold where a file says nothing, and are an error where it says otherwise; and
 /// the limits of what a file may hold.
 struct ReadOptions {
@@ -142,6 +153,8 @@ struct ReadOptions {
   /// The safety factor that replaces the file's; heeded by read_document(), which warns of any.
   std::optional<double> safety_factor = {};
   bool may_be_in_pieces = false;  ///< Document::may_be_in_pieces; heeded by read_document().
+  /// The kinds of voxels; an error with files that have none.
+  std::optional<VoxelPalette> palette = {};
 };
 
 /// Takes a number of the material that somebody states.
