@@ -18,13 +18,13 @@ _holdfast() {
         --palette) files=1 ;;
         --safety-factor|--margin) : ;;
         --json) files=1 ;;
-        --connections) words="all broken" ;;
         --csv) files=1 ;;
+        --vtk) files=1 ;;
+        --connections) words="all broken" ;;
         --svg) files=1 ;;
         --size) : ;;
         --title) : ;;
         --view) words="iso front side top" ;;
-        --vtk) files=1 ;;
         --html) files=1 ;;
         --certificate) files=1 ;;
         --limit-seconds) : ;;
@@ -38,7 +38,7 @@ _holdfast() {
         --lose-seconds) : ;;
         --threads) : ;;
         --memory) : ;;
-        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --palette --allow-unknown --safety-factor --margin --json --connections --csv --svg --size --title --grey --view --no-legend --vtk --html --certificate --prove --buckling --limit --limit-seconds --remedies --deformed --up-to --follow --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --cascade -q --quiet --bonded --threads --memory"; else files=1; fi ;;
+        *) if [[ $current == -* ]]; then words="-h --help --robot --lattice --set --support-z --pitch --palette --allow-unknown --safety-factor --margin --json --csv --vtk --connections --svg --size --title --grey --view --no-legend --html --certificate --prove --buckling --limit --limit-seconds --remedies --deformed --up-to --follow --scatter --scatter-common --scatter-mass --scatter-law --probability --lose-one --lose --lose-seconds --cascade -q --quiet --bonded --threads --memory"; else files=1; fi ;;
       esac
       ;;
     steps)

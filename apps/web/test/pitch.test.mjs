@@ -178,7 +178,8 @@ test('bricks are as high as they are, and judged as by the program', async () =>
 test('every format that the program reads is read, meshes with the edge that the user gives', async () => {
   const page = await openPage(browser);
   page.on('dialog', (dialog) => dialog.accept('20'));
-  for (const name of readdirSync(path.join(repository, 'examples/formats'))) {
+  const names = readdirSync(path.join(repository, 'examples/formats')).filter((name) => !name.endsWith('.rofi'));
+  for (const name of names) {
     await dropSample(page, name);
     const args = ['convert', path.join(repository, 'examples/formats', name), path.join(temporaryFolder(), 'robot.json')];
     execFileSync(program, [...args, ...(/stl|obj/.test(name) ? ['--pitch', '20'] : [])], { stdio: 'ignore' });
