@@ -99,8 +99,8 @@ bool Reading::take_room(std::size_t cell_count, const Where& where) {
   cell_count_ += std::min(cell_count, model::kModuleCountMax + 1);
   if (cell_count_ > model::kModuleCountMax) {
     fail({base::ErrorCode::kBadInput,
-          fmt::format("{} cells here make more than the {} that are allowed", cell_count,
-                      model::kModuleCountMax),
+          fmt::format("more than the {} cells that are allowed, with {} here",
+                      model::kModuleCountMax, cell_count),
           where()});
   }
   return !has_failed();

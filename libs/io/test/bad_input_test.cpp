@@ -120,7 +120,7 @@ TEST(BadInput, of_more_modules_than_allowed_is_refused_before_they_are_made) {
   expect_refusal({xml("<blockBox/>"), "line 3", "20000000"});
   // One cell, then 999 x 999 x 21, as VisibleSim leaves out the last layer of the grid.
   expect_refusal({xml("<blockBox boxSize=\"0,0,0\"/>\n<blockBox boxSize=\"1000,1000,21\"/>"),
-                  "line 4", "20958021 cells here make more than the 20000000"});
+                  "line 4", "more than the 20000000 cells that are allowed, with 20958021 here"});
 }
 
 TEST(BadInput, in_a_place_with_a_long_name_is_refused_with_the_end_of_it) {

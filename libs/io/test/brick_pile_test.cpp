@@ -208,6 +208,21 @@ TEST(BrickPile, stands_on_studs_unless_an_option_gives_the_floor) {
   EXPECT_EQ(floor.modules.size() + 4, plate.modules.size());
 }
 
+TEST(BrickPile, takes_every_safety_factor) {
+  for (const double factor : {1.0, 1.2, 7.0, kSafetyFactorMax}) {
+    ReadOptions options = kOnPlate;
+    options.safety_factor = factor;
+    const auto robot = make_robot(read_pile("2x4 (0,0,0)\n1x4 (0,0,1)\n", options));
+    ASSERT_TRUE(robot) << robot.error().message;
+  }
+}
+
+TEST(BrickPile, names_a_cell_of_bricks_that_overlap) {
+  const auto read = read_document("2x4 (0,0,0)\n2x4 (1,0,0)\n");
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().message, "the cell (1,0,0) is there twice, expected each cell once");
+}
+
 TEST(BrickPile, takes_numbers_of_options_and_refuses_another_robot) {
   ReadOptions options = kOnFloor;
   options.settings = {{"strength_vertical_n", 1.5}};

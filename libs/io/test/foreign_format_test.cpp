@@ -482,34 +482,71 @@ TEST(ForeignFormat, fills_a_body_by_its_volume) {
   EXPECT_NEAR(count, volume, 0.01 * volume);
 }
 
-/// A file that is cut, or of which one byte is changed, is another structure or one clear line.
+bool is_clear_line(const base::Error& error) {
+  return !error.message.empty() && error.message.size() < 400 &&
+         std::ranges::all_of(error.message + error.where,
+                             [](char c) { return c >= ' ' && c <= '~'; });
+}
+
+/// Reads what may be damaged, and makes a robot of it: both succeed or say in a line why not.
+void try_damaged(const std::string& text, const std::string& ending) {
+  const auto read = read_as(text, ending, 40);
+  if (!read) {
+    EXPECT_TRUE(is_clear_line(read.error())) << read.error().message;
+    return;
+  }
+  EXPECT_FALSE(read.value().document.modules.empty());
+  if (read.value().document.modules.size() < 10000) {
+    const auto robot = make_robot(read.value().document);
+    EXPECT_TRUE(robot || is_clear_line(robot.error()));
+  }
+}
+
+/// A file that is cut anywhere, or of which one byte or a stretch of it is changed, is another
+/// structure or one clear line, whatever format its ending says.
 TEST(ForeignFormat, survives_files_that_are_cut_or_damaged) {
   base::Rng random(7);
-  const auto try_it = [](const std::string& text, const std::string& ending) {
-    const auto read = read_as(text, ending, 40);
-    if (!read) {
-      const base::Error& error = read.error();
-      EXPECT_TRUE(!error.message.empty() && error.message.size() < 400) << error.message;
-      EXPECT_TRUE(std::ranges::all_of(error.message + error.where, [](char c) {
-        return c >= ' ' && c <= '~';
-      })) << error.message;
-    } else {
-      EXPECT_FALSE(read.value().document.modules.empty());
-    }
-  };
+  std::set<std::string> endings = {"", ".json"};
+  for (const Sample& one : samples()) {
+    endings.insert(ending_of_sample(one.name));
+  }
   for (const Sample& one : samples()) {
     SCOPED_TRACE(one.name);
     const std::string text = sample(one.name);
     const std::string ending = ending_of_sample(one.name);
-    const std::size_t step = std::max<std::size_t>(1, text.size() / 150);
-    for (std::size_t size = 0; size < text.size(); size += step) {
-      try_it(text.substr(0, size), ending);
+    for (std::size_t size = 0; size < text.size(); ++size) {
+      try_damaged(text.substr(0, size), ending);
     }
     for (std::size_t i = 0; i < test::campaign(300U, 10U); ++i) {
       std::string damaged = text;
       damaged[random.next() % text.size()] ^= static_cast<char>(1U << random.next() % 8);
-      try_it(damaged, ending);
+      try_damaged(damaged, ending);
+      const std::size_t begin = random.next() % text.size();
+      try_damaged(text.substr(0, begin) + text.substr(random.next() % text.size()), ending);
     }
+    for (const std::string& other : endings) {
+      try_damaged(text, other);
+    }
+  }
+}
+
+/// Parts that touch at an edge only are told from those that a face joins, in every notation.
+TEST(ForeignFormat, says_which_cells_touch_at_an_edge_only) {
+  const Cells cells = {{0, 0, 0}, {1, 0, 0}, {2, 0, 1}};
+  const std::pair<std::string, const char*> files[] = {
+      {"0,0,0\n1,0,0\n2,0,1\n", ".csv"},
+      {"[[0, 0, 0], [1, 0, 0], [2, 0, 1]]", ".json"},
+      {vox_of(cells), ".vox"},
+      {obj_of(surface_of(cells), 40), ".obj"},
+      {"3\n['Cube[(0,0,0)]', 'Cube[(1,0,0)]', 'Cube[(2,0,1)]']\n", ".record"},
+      {"1, 1, 1, 1, 1\n\n1, 1, 0, 0, 0\n2, 1, 1, 0, 0\n3, 1, 2, 0, 1\n", ".scen"},
+      {"2x1 (0,0,0)\n1x1 (2,0,1)\n", ".txt"}};
+  for (const auto& [text, ending] : files) {
+    const auto read = read_as(text, ending, 40);
+    ASSERT_TRUE(read) << ending << message_of(read);
+    const auto robot = make_robot(read.value().document);
+    ASSERT_FALSE(robot) << ending;
+    EXPECT_NE(robot.error().message.find("(2,0,1)"), std::string::npos) << robot.error().message;
   }
 }
 
@@ -549,6 +586,12 @@ TEST(ForeignFormat, refuses_palettes_that_leave_a_voxel_open) {
   EXPECT_NE(message_of(read_document("0,0,0\n", {.ending = ".csv", .palette = only.value()}))
                 .find("a palette is given, expected a file of MagicaVoxel"),
             std::string::npos);
+  const std::string whole = palette_text(R"("1": "post")");
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    const auto cut = read_palette(whole.substr(0, size));
+    ASSERT_FALSE(cut);
+    EXPECT_TRUE(is_clear_line(cut.error())) << cut.error().message;
+  }
   const std::pair<std::string, const char*> wrong[] = {
       {palette_text(R"("1": "pole")"), "/palette/1: the kind 'pole' is not in"},
       {palette_text(R"("0": "post")"), "/palette/0: expected different indices"},

@@ -35,8 +35,9 @@ constexpr StudHold kNarrowHold = {4 * 0.98, kStudPitchMm / 4};
 /// A stud bends as its points do, whose mean square distance from an axis is at least this.
 constexpr double kMeanSquareMm2 = 4.0 / 3;
 
-/// Sides hold nothing; what comes later beside a brick breaks off.
-constexpr double kSideStrengthN = 1e-12;
+/// Sides hold nothing; what comes later beside a brick breaks off. A safety factor of
+/// kSafetyFactorMax leaves a number that is allowed.
+constexpr double kSideStrengthN = 1e-8;
 
 bool is_narrow(const BrickSize& size) { return std::min(size.along_x, size.along_y) == 1; }
 
@@ -157,8 +158,11 @@ void BrickPile::take_base_plate() {
   const std::size_t count = modules.size();
   const auto z_of = [](const ModuleEntry& module) { return module.cell.z; };
   const std::int32_t lowest = std::ranges::min_element(modules, {}, z_of)->cell.z;
+  model::CellIndex plate(count);  // Bricks that share a cell are no fault of the plate.
   for (std::size_t i = 0; i < count && !reading_.has_failed(); ++i) {
-    if (const base::Cell cell = modules[i].cell; cell.z == lowest) {
+    const base::Cell cell = modules[i].cell;
+    if (cell.z == lowest &&
+        plate.insert(cell, static_cast<std::int32_t>(i)) == model::CellIndex::kNone) {
       reading_.add(cell.x, cell.y, cell.z - 1, std::nullopt, true);
       brick_of_.push_back(brick_of_[i]);
       ++plate_count_;
