@@ -7,6 +7,8 @@
 
 #include <string>
 
+#include "random_robot.hpp"
+
 namespace holdfast {
 namespace {
 
@@ -45,6 +47,71 @@ TEST(Simulate, says_what_is_wrong_with_the_options) {
   const auto run = simulate(structure, check(structure), options);
   ASSERT_FALSE(run);
   EXPECT_NE(run.error().message.find("loss"), std::string::npos) << run.error().message;
+}
+
+/// A random robot without planned modules, of whose pairs every second one that can be open is.
+model::RobotSpec robot_with_open_pairs(std::uint64_t seed) {
+  model::RobotSpec spec = test::random_robot(seed, 4, 20);
+  spec.planned.clear();
+  model::forget_absent(spec);
+  const auto whole = model::Robot::create(spec);
+  EXPECT_TRUE(whole);
+  for (std::size_t i = seed % 2; whole && i < whole.value().connections().size(); i += 2) {
+    const model::Connection pair = whole.value().connections()[i];
+    spec.released.push_back({whole.value().modules()[static_cast<std::size_t>(pair.a)].cell,
+                             whole.value().modules()[static_cast<std::size_t>(pair.b)].cell});
+    if (!model::Robot::create(spec) || spec.released.size() > agent::kWordCountMax) {
+      spec.released.pop_back();
+    }
+  }
+  return spec;
+}
+
+TEST(Simulate, knows_open_pairs_as_the_exact_answer_does) {
+  std::size_t open_count = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    const auto robot = model::Robot::create(robot_with_open_pairs(seed));
+    ASSERT_TRUE(robot);
+    const CheckResult exact = check(robot.value());
+    const auto run = simulate(robot.value(), exact, {.seed = seed});
+    ASSERT_TRUE(run) << run.error().message;
+    EXPECT_TRUE(run.value().result.all_agree);
+    EXPECT_EQ(run.value().view.verdict, exact.assessment.verdict) << seed;
+    // Where the regularised law has no answer, or several, the modules may find another one.
+    const bool is_one = exact.assessment.contact_model == verdict::ContactModel::kRegularised &&
+                        !exact.assessment.several;
+    for (std::size_t i = 0; is_one && i < run.value().view.connections.size(); ++i) {
+      EXPECT_NEAR(run.value().view.connections[i].load_ratio,
+                  exact.assessment.connections[i].load_ratio, 0.01)
+          << seed << ": " << model::ends_text(robot.value(), i);
+    }
+    open_count += robot.value().released_count();
+  }
+  EXPECT_GT(open_count, 100U);
+}
+
+/// More than modules keep in mind are refused by number, as are planned modules beside open pairs.
+TEST(Simulate, refuses_open_pairs_that_modules_cannot_know) {
+  std::string cells = "[0,0,0]";
+  std::string open;
+  for (int i = 1; i < 20; ++i) {
+    const std::string x = std::to_string(i);
+    cells += ",[" + x + ",0,0],[" + x + ",0,1]";
+    open += std::string(i > 1 ? "," : "") + "[[" + x + ",0,0],[" + x + ",0,1]]";
+  }
+  const std::string head = R"({"format": "holdfast-structure", "version": 2, "modules": [)";
+  const auto message_of = [](const std::string& text) {
+    const auto structure = load_text(text, "open");
+    EXPECT_TRUE(structure) << structure.error().message;
+    const auto run = simulate(structure.value(), check(structure.value()), {});
+    return run ? "no error" : run.error().message;
+  };
+  EXPECT_NE(message_of(head + cells + ",[0,0,1]], \"open\": [" + open + "]}").find("19 words"),
+            std::string::npos);
+  EXPECT_NE(message_of(head + R"([0,0,0],[0,0,1],[1,0,0],[1,0,1]], "planned": [[0,0,2]],
+                                "open": [[[0,0,1],[1,0,1]]]})")
+                .find("simulate --steps"),
+            std::string::npos);
 }
 
 /// The exact answer is given another law here; the robot's is the regularised one.

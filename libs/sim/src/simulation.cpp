@@ -9,6 +9,7 @@
 #include "engine.hpp"
 #include "holdfast/agent/cells/feet.hpp"
 #include "holdfast/base/check.hpp"
+#include "holdfast/host/text.hpp"
 #include "world/environment_map.hpp"
 
 namespace holdfast::sim {
@@ -35,18 +36,24 @@ std::optional<std::string> find_unknown_fault(const model::Robot& robot) {
   return std::nullopt;
 }
 
-/// The modules' own program takes every neighbour for connected.
-std::optional<std::string> find_robot_fault(const model::Robot& robot) {
+/// The modules' own program takes every neighbour for connected, unless it is told otherwise in the
+/// words of a step, which know nothing of what else happens.
+std::optional<std::string> find_robot_fault(const model::Robot& robot,
+                                            const SimulationOptions& options) {
   if (auto unknown = find_unknown_fault(robot)) {
     return unknown;
   }
-  if (robot.released_count() == 0) {
+  const bool is_told = !options.step.empty() && robot.planned_count() == 0 &&
+                       options.faults.empty() && options.announcements.empty();
+  if (robot.released_count() == 0 || is_told) {
     return std::nullopt;
   }
   return fmt::format(
-      "the robot has {} pairs of neighbours that are not connected, expected none: the modules' "
-      "program connects all neighbours",
-      robot.released_count());
+      "the robot has {} that {} not connected: modules are told of that by 'simulate' alone, and "
+      "not with planned modules, changes or faults; try 'simulate --steps' of a file whose steps "
+      "attach what is planned",
+      host::counted(robot.released_count(), "pair") + " of neighbours",
+      robot.released_count() == 1 ? "is" : "are");
 }
 
 /// The number of a lattice in greetings.
@@ -93,7 +100,7 @@ std::optional<std::string> find_place_fault(const model::Robot& robot,
 std::optional<std::string> find_options_fault(const model::Robot& robot,
                                               const SimulationOptions& options) {
   const std::size_t count = robot.modules().size() - robot.planned_count();
-  auto found = find_robot_fault(robot);
+  auto found = find_robot_fault(robot, options);
   if (!found && options.judges_faces) {
     found = find_floor_fault(robot);
   }

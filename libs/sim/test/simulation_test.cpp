@@ -199,7 +199,13 @@ TEST(SimulationOptions, refuse_a_robot_whose_neighbours_are_not_all_connected) {
   spec.released = {{spec.existing[0], spec.existing[1]}};
   const auto fault = find_options_fault(make_robot(spec), {});
   ASSERT_TRUE(fault);
-  EXPECT_NE(fault->find("1 pairs of neighbours that are not connected"), std::string::npos);
+  EXPECT_NE(fault->find("1 pair of neighbours that is not connected"), std::string::npos);
+  const agent::StepWord off = {.kind = agent::StepWord::Kind::kOff, .face = 0, .mask = 7};
+  EXPECT_FALSE(find_options_fault(make_robot(spec), {.step = {off}}));
+  EXPECT_TRUE(find_options_fault(make_robot(spec),
+                                 {.announcements = {{.at = 9, .cell = {1, 0, 2}}}, .step = {off}}));
+  spec.planned = {{0, 0, 2}};
+  EXPECT_TRUE(find_options_fault(make_robot(spec), {.step = {off}}));
 }
 
 }  // namespace

@@ -161,6 +161,25 @@ std::vector<std::string> notes_on(const model::Robot& robot, const sim::Simulati
   return notes;
 }
 
+/// Open pairs as modules are told of them: a step that changes nothing, with these connections off.
+std::vector<agent::StepWord> words_of_open_pairs(const model::Robot& robot) {
+  constexpr std::uint8_t kAllStages = (1U << agent::kStageCount) - 1;
+  std::vector<agent::StepWord> words;
+  for (std::size_t a = 0; a < robot.modules().size(); ++a) {
+    for (const base::Direction face : base::directions(robot.lattice())) {
+      const auto at = static_cast<std::size_t>(base::index(face));
+      const std::int32_t b = robot.neighbours()[a][at];
+      if (b > static_cast<std::int32_t>(a) && robot.connected()[a][at] != b) {
+        words.push_back({.kind = agent::StepWord::Kind::kOff,
+                         .face = static_cast<std::uint8_t>(at),
+                         .mask = kAllStages,
+                         .cell = robot.modules()[a].cell});
+      }
+    }
+  }
+  return words;
+}
+
 }  // namespace
 
 verdict::Assessment view_of(const model::Robot& robot, const verdict::Assessment& exact,
@@ -274,10 +293,15 @@ DistributedRun describe_run(const model::Robot& robot, const CheckResult& exact,
 base::Result<DistributedRun> simulate(const model::Robot& robot, const CheckResult& exact,
                                       const sim::SimulationOptions& options,
                                       const SimulationProgress& progress) {
-  if (const auto fault = sim::find_options_fault(robot, options)) {
+  sim::SimulationOptions mine = options;
+  if (robot.released_count() > 0) {
+    mine.step = words_of_open_pairs(robot);
+    mine.step_end = &robot;
+  }
+  if (const auto fault = sim::find_options_fault(robot, mine)) {
     return base::Error{.code = base::ErrorCode::kBadInput, .message = *fault, .where = {}};
   }
-  sim::Simulation simulation(robot, options);
+  sim::Simulation simulation(robot, mine);
   while (simulation.run_for(kSliceEvents)) {
     if (progress && !progress(simulation.counts())) {
       break;
