@@ -80,5 +80,28 @@ TEST(DeformedSeries, says_that_there_is_nothing_to_write) {
   EXPECT_TRUE(bad.finish());
 }
 
+/// Held by feet that stick, (1,0,0)-(2,0,0) would break; one foot slips before, and it holds. With
+/// a floor that holds more than feet push, both say the same.
+TEST(Deformed, does_not_call_an_overload_what_holds_where_feet_slip) {
+  const auto judge = [](const std::string& friction, bool is_deformed) {
+    const auto structure = load_text(
+        R"({"format": "holdfast-structure", "version": 2, "floor": {"friction": )" + friction +
+        R"(}, "material": {"pitch_mm": [25, 25, 11], "elastic_modulus_mpa": 1e5},
+            "modules": [[0,0,0], [0,0,1], [0,0,2], [1,0,0], [1,0,1], [2,0,0], [2,0,1], [3,0,1],
+                        [4,0,1], [5,0,1]],
+            "open": [[[1,0,1], [2,0,1]], [[1,0,0], [1,0,1]]],
+            "connections": [{"between": [[1,0,0], [2,0,0]], "strength_n": 4.72}]})");
+    EXPECT_TRUE(structure);
+    return check(structure.value(), {.thread_count = 1, .is_deformed_wanted = is_deformed})
+        .assessment;
+  };
+  EXPECT_EQ(judge("0.3", false).verdict, verdict::Verdict::kSafe);
+  const verdict::Assessment slips = judge("0.3", true);
+  EXPECT_EQ(slips.verdict, verdict::Verdict::kUndecided);
+  EXPECT_EQ(slips.reasons.front().code, verdict::ReasonCode::kMaySlip);
+  EXPECT_EQ(judge("9", false).verdict, verdict::Verdict::kOverload);
+  EXPECT_EQ(judge("9", true).verdict, verdict::Verdict::kOverload);
+}
+
 }  // namespace
 }  // namespace holdfast

@@ -110,7 +110,7 @@ TEST(Simulate, refuses_open_pairs_that_modules_cannot_know) {
             std::string::npos);
   EXPECT_NE(message_of(head + R"([0,0,0],[0,0,1],[1,0,0],[1,0,1]], "planned": [[0,0,2]],
                                 "open": [[[0,0,1],[1,0,1]]]})")
-                .find("simulate --steps"),
+                .find("simulate --stages"),
             std::string::npos);
 }
 

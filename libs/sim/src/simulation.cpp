@@ -50,8 +50,8 @@ std::optional<std::string> find_robot_fault(const model::Robot& robot,
   }
   return fmt::format(
       "the robot has {} that {} not connected: modules are told of that by 'simulate' alone, and "
-      "not with planned modules, changes or faults; try 'simulate --steps' of a file whose steps "
-      "attach what is planned",
+      "not with planned modules, changes or faults; try 'simulate --stages' of a file whose "
+      "steps attach what is planned",
       host::counted(robot.released_count(), "pair") + " of neighbours",
       robot.released_count() == 1 ? "is" : "are");
 }

@@ -174,10 +174,13 @@ std::optional<Reason> find_end(const model::Robot& robot, const Path& path) {
   return std::nullopt;
 }
 
-/// The verdict by the first of the table's events, docs/second_order.md.
+/// The verdict by the first of the table's events, docs/second_order.md. Feet are followed as if
+/// they stuck: what breaks then may hold where they slip.
 Happening decision_of(const model::Robot& robot, const Path& path,
                       const std::vector<Happening>& all, const Assessment& assessment) {
-  if (!all.empty() && all.front().factor <= 1 + kFactorTie) {
+  const auto slip = find_slip(robot, assessment.equilibrium);
+  const bool happens = !all.empty() && all.front().factor <= 1 + kFactorTie;
+  if (happens && !(slip && all.front().verdict == Verdict::kOverload)) {
     Happening first = all.front();
     if (first.factor >= 1 - kFactorTie) {
       first.verdict = Verdict::kUndecided;
@@ -187,7 +190,7 @@ Happening decision_of(const model::Robot& robot, const Path& path,
   if (const auto end = find_end(robot, path)) {
     return {.reason = *end};
   }
-  if (const auto slip = find_slip(robot, assessment.equilibrium)) {
+  if (slip) {
     return {.reason = {.code = ReasonCode::kMaySlip,
                        .numbers = {number(slip->module), slip->ratio, slip->friction}}};
   }

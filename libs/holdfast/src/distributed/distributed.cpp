@@ -295,8 +295,9 @@ base::Result<DistributedRun> simulate(const model::Robot& robot, const CheckResu
                                       const SimulationProgress& progress) {
   sim::SimulationOptions mine = options;
   if (robot.released_count() > 0) {
-    mine.step = words_of_open_pairs(robot);
-    mine.step_end = &robot;
+    mine.step_end = mine.step.empty() ? &robot : mine.step_end;
+    const std::vector<agent::StepWord> open = words_of_open_pairs(robot);
+    mine.step.insert(mine.step.begin(), open.begin(), open.end());
   }
   if (const auto fault = sim::find_options_fault(robot, mine)) {
     return base::Error{.code = base::ErrorCode::kBadInput, .message = *fault, .where = {}};
