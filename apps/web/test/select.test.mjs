@@ -245,6 +245,65 @@ test('what is selected is painted, loaded, filled and removed as one', async () 
   assert.deepEqual(page.faults, []);
 });
 
+test('undo and redo bring back what was selected', async () => {
+  const page = await openPage(browser);
+  await open(page, 'row', { modules: [[0, 0, 0], [1, 0, 0], [2, 0, 0], [2, 0, 1]] });
+  await choose(page, [[2, 0, 0], [2, 0, 1]]);
+  await page.selectOption('#select-direction', { label: '+y' });
+  await press(page, 'copy', 'remove');
+  assert.deepEqual(await chosen(page), []);
+  const frames = () => page.evaluate(() => [...globalThis.holdfast.app.view.modules.patterns].filter((pattern) => pattern >= 16).length);
+  const undo = async (key) => {
+    await page.focus('#canvas');
+    await page.keyboard.press(key);
+    await settled(page);
+    return chosen(page);
+  };
+  assert.deepEqual(await undo('Control+z'), ['2,1,0', '2,1,1'], 'the copy, which was removed');
+  assert.equal(await frames(), 2);
+  assert.deepEqual(await undo('Control+z'), ['2,0,0', '2,0,1']);
+  assert.deepEqual(await undo('Control+y'), ['2,1,0', '2,1,1']);
+  assert.deepEqual(await undo('Control+y'), []);
+  assert.deepEqual(page.faults, []);
+});
+
+const together = (page) =>
+  page.evaluate(() => {
+    const { open = [], connections = [], bodies = [] } = globalThis.holdfast.bench.robot.surroundings;
+    return { open, connections: connections.map(({ between }) => between), bodies };
+  });
+
+test('pairs and bodies go with modules that are moved, copied, turned and removed', async () => {
+  const page = await openPage(browser);
+  const base = [0, 1, 2, 3].map((x) => ({ cell: [x, 0, 0], fixed: true }));
+  const tower = [[0, 0, 1], [1, 0, 1], [0, 0, 2], [1, 0, 2]];
+  const between = [[0, 0, 1], [0, 0, 2]];
+  await open(page, 'pairs', { modules: [...base, ...tower], open: [[[0, 0, 1], [1, 0, 1]]],
+    connections: [{ between, strength_n: 6 }], bodies: [[[0, 0, 2], [1, 0, 2]]] });
+  const first = await together(page);
+  const word = await verdict(page);
+  await choose(page, tower);
+  await page.selectOption('#select-direction', { label: '+x' });
+  await press(page, 'copy');
+  const both = await together(page);
+  assert.deepEqual([both.open.length, both.connections.length, both.bodies.length], [2, 2, 2]);
+  assert.ok(['safe', 'overload', 'instability'].includes(await verdict(page)), await verdict(page));
+  await press(page, 'remove');
+  assert.deepEqual(await together(page), first);
+  assert.equal(await verdict(page), word);
+  await choose(page, tower);
+  await press(page, 'move', 'move');
+  assert.deepEqual((await together(page)).open.map((pair) => pair.map(String).sort()), [['2,0,1', '3,0,1']]);
+  assert.equal(await verdict(page), word, 'the same tower on other modules that are fixed');
+  await press(page, 'turn', 'turn', 'turn', 'turn');
+  assert.equal(await verdict(page), word);
+  await choose(page, [[2, 0, 2]]);
+  await press(page, 'remove');
+  assert.deepEqual({ ...(await together(page)), open: 1 }, { open: 1, connections: [], bodies: [] });
+  assert.notEqual(await verdict(page), 'none');
+  assert.deepEqual(page.faults, []);
+});
+
 test('beside a stage nothing of the robot that is built is selected', async () => {
   const page = await openPage(browser);
   await openExample(page, 'arm_breaks_a');

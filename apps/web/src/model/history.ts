@@ -4,8 +4,14 @@ import type { Cell, Role } from './cell';
 import { EditedRobot, type CellChange, type Settings } from './edited_robot';
 import { withoutModules } from './surroundings';
 
+/** What was selected before a step and, if it selected something itself, after it. */
+interface Choice {
+  before: readonly Cell[];
+  after?: readonly Cell[];
+}
+
 /** What can be undone: changed cells with what goes with them, changed settings, or another robot in place of this one. */
-type Step = { label: string } & (
+type Step = { label: string; chosen?: Choice } & (
   | { what: 'cells' | 'settings'; changes: CellChange[]; before: Settings; after: Settings }
   | { what: 'robot'; before: EditedRobot; after: EditedRobot }
 );
@@ -27,10 +33,20 @@ export class History {
   /** Whether the last change took one back. */
   isUndoing = false;
 
+  /** `changed` hears what is to be selected again, if that is known; `chosen` says what is selected. */
   constructor(
     public robot: EditedRobot,
-    private readonly changed: (what: Change) => void,
+    private readonly changed: (what: Change, chosen?: readonly Cell[]) => void,
+    private readonly chosen: () => readonly Cell[],
   ) {}
+
+  /** The step that was just done has selected these. */
+  noteChosen(cells: readonly Cell[]): void {
+    const step = this.done.at(-1);
+    if (step?.chosen) {
+      step.chosen.after = cells;
+    }
+  }
 
   /**
    * Sets cells each to a role, or empties them, and settings, all in one step; what is so already is left out.
@@ -95,15 +111,16 @@ export class History {
       from.pop();
       to.push(step);
       this.isUndoing = !isForward;
-      this.changed(step.what);
+      this.changed(step.what, isForward ? step.chosen?.after : step.chosen?.before);
     }
     return step?.label;
   }
 
   /** What cannot be applied was never done: it throws, and nothing has changed. */
   private do(step: Step): void {
+    const before = this.chosen();
     this.apply(step, true);
-    this.done.push(step);
+    this.done.push({ ...step, chosen: { before } });
     this.undone = [];
     this.isUndoing = false;
     this.changed(step.what);

@@ -215,6 +215,7 @@ export class Selection {
       ...to.map((cell, i) => ({ cell, role: robot.role(cells[i]) })),
     ];
     if (this.bench.change(label, wanted, withOwnMoved(robot.surroundings, cells, to, isCopied))) {
+      this.bench.history.noteChosen(to);
       this.set(to);
     }
   }

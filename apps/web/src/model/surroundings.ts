@@ -37,6 +37,16 @@ export interface OwnModule {
   kind?: string;
 }
 
+export type Pair = readonly [Cell, Cell];
+
+/** A single connection with limits of its own; more members may stand here. */
+export interface OwnConnection {
+  between: Pair;
+}
+
+/** Cells of a rigid piece: one by one, a box, or what the page does not know. */
+export type BodyPart = Cell | { from?: Cell; to?: Cell };
+
 /** A step of a sequence; only what the page itself writes is named. */
 export interface StepEntry {
   attach?: readonly Cell[];
@@ -53,6 +63,10 @@ export interface Surroundings {
   loads?: readonly Load[];
   /** Only modules that have something of their own. */
   modules?: readonly OwnModule[];
+  /** Neighbours that are not joined. */
+  open?: readonly Pair[];
+  connections?: readonly OwnConnection[];
+  bodies?: readonly (readonly BodyPart[])[];
   steps?: readonly StepEntry[];
   /**
    * Where somebody states that the elastic modulus is what it is by default; any other is stated anyway. Lengths of
@@ -168,12 +182,75 @@ const others = <Entry extends { cell: Cell }>(list: readonly Entry[] | undefined
 
 /** What no module is there for any more goes with it. */
 export function withoutModules(surroundings: Surroundings, cells: readonly Cell[]): Surroundings {
-  const { loads, modules } = surroundings;
-  if (!loads?.length && !modules?.length) {
+  const { loads, modules, open, connections, bodies } = surroundings;
+  if (![loads, modules, open, connections, bodies].some((list) => list?.length)) {
     return surroundings;
   }
   const gone = new Set(cells.map(String));
-  return tidied({ ...surroundings, loads: others(loads, gone), modules: others(modules, gone) });
+  return tidied({
+    ...surroundings,
+    loads: others(loads, gone),
+    modules: others(modules, gone),
+    open: open?.filter((pair) => !pair.some((cell) => gone.has(String(cell)))),
+    connections: connections?.filter(({ between }) => !between.some((cell) => gone.has(String(cell)))),
+    bodies: bodies?.flatMap((body) => bodyWithout(body, gone)),
+  });
+}
+
+/** Cells of a rigid piece; undefined where its parts are written in a way that the page does not know. */
+function cellsOf(body: readonly BodyPart[]): Cell[] | undefined {
+  const cells: Cell[] = [];
+  for (const part of body) {
+    const [from, to] = Array.isArray(part) ? [part as Cell, part as Cell] : [(part as Obstacle).from, (part as Obstacle).to];
+    if (!from || !to) {
+      return undefined;
+    }
+    for (let x = from[0]; x <= to[0]; ++x) {
+      for (let y = from[1]; y <= to[1]; ++y) {
+        for (let z = from[2]; z <= to[2]; ++z) {
+          cells.push([x, y, z]);
+        }
+      }
+    }
+  }
+  return cells;
+}
+
+/** What is left of a rigid piece: one cell alone is none. */
+function bodyWithout(body: readonly BodyPart[], gone: ReadonlySet<string>): (readonly BodyPart[])[] {
+  const cells = cellsOf(body);
+  const left = cells?.filter((cell) => !gone.has(String(cell)));
+  return !cells || !left || left.length === cells.length ? [body] : left.length > 1 ? [left] : [];
+}
+
+/** Where modules go, by the text of their cell. */
+type Targets = ReadonlyMap<string, Cell>;
+
+/** The pair where both modules went; undefined if one of them stays, as they part then. */
+function pairMoved(pair: Pair, targets: Targets): Pair | undefined {
+  const [a, b] = pair.map((cell) => targets.get(String(cell)));
+  return a && b && [a, b];
+}
+
+/** What names several modules goes with them where all of them go; else those that go leave it. */
+function togetherMoved({ open, connections, bodies }: Surroundings, targets: Targets, isCopied: boolean): Surroundings {
+  const gone = new Set(isCopied ? [] : targets.keys());
+  const stays = (pair: Pair) => !pair.some((cell) => gone.has(String(cell)));
+  const bodyMoved = (body: readonly BodyPart[]) => {
+    const to = cellsOf(body)?.map((cell) => targets.get(String(cell)));
+    return to?.every((cell) => cell !== undefined) ? [to as Cell[]] : [];
+  };
+  return {
+    open: open && [...open.filter(stays), ...open.flatMap((pair) => [pairMoved(pair, targets)].filter((one) => one !== undefined))],
+    connections: connections && [
+      ...connections.filter(({ between }) => stays(between)),
+      ...connections.flatMap((one) => {
+        const between = pairMoved(one.between, targets);
+        return between ? [{ ...one, between }] : [];
+      }),
+    ],
+    bodies: bodies && [...bodies.flatMap((body) => bodyWithout(body, gone)), ...bodies.flatMap(bodyMoved)],
+  };
 }
 
 /** What modules have of their own goes with them to other cells, or is there twice if they are copied. */
@@ -184,7 +261,8 @@ export function withOwnMoved(surroundings: Surroundings, cells: readonly Cell[],
     ...others(list, left),
     ...list.filter(({ cell }) => targets.has(String(cell))).map((entry) => ({ ...entry, cell: targets.get(String(entry.cell))! })),
   ];
-  return tidied({ ...surroundings, loads: moved(surroundings.loads), modules: moved(surroundings.modules) });
+  const together = togetherMoved(surroundings, targets, isCopied);
+  return tidied({ ...surroundings, ...together, loads: moved(surroundings.loads), modules: moved(surroundings.modules) });
 }
 
 /** What a load tool puts on a module. */

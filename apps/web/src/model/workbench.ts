@@ -24,10 +24,17 @@ export const mayBe = ({ robot, tool }: Workbench, cell: Cell) =>
 
 /** What is built, with which tool and where: the page's state, without its picture and the answer. */
 export class Workbench {
-  readonly history = new History(new EditedRobot(), (what) => {
-    this.selection.follow();
-    this.robotListeners.forEach((tell) => tell(what));
-  });
+  readonly history = new History(
+    new EditedRobot(),
+    (what, chosen = []) => {
+      this.selection.follow();
+      this.robotListeners.forEach((tell) => tell(what));
+      if (chosen.length > 0) {
+        this.selection.set(chosen);
+      }
+    },
+    () => this.selection.cells,
+  );
   readonly selection = new Selection(this);
   tool: Tool = 'add';
   /** Of the modules that are attached or painted. */
