@@ -17,6 +17,21 @@ let browser;
 before(async () => (browser = await launch()));
 after(() => browser.close());
 
+test('all tools stand in one row at 1280 pixels, whichever is chosen', async () => {
+  for (const language of ['en', 'fr']) {
+    const page = await openPage(browser, { viewport: { width: 1280, height: 800 }, fragment: `?lang=${language}` });
+    for (const tool of ['look', 'select', 'add', 'remove', 'paint', 'obstacle', 'load']) {
+      const tops = await page.evaluate((name) => {
+        globalThis.holdfast.bench.setTool(name);
+        const shown = [...document.querySelectorAll('.tools > *')].filter((part) => part.checkVisibility());
+        return shown.map((part) => Math.round(part.getBoundingClientRect().top));
+      }, tool);
+      assert.deepEqual(tops, tops.map(() => tops[0]), `${language}, ${tool}`);
+    }
+    assert.deepEqual(page.faults, []);
+  }
+});
+
 test('the numbers of what a finger has tapped stay', async () => {
   const page = await openPage(browser, { viewport: { width: 390, height: 780 }, hasTouch: true });
   await openExample(page, 'arm_tips_a');
