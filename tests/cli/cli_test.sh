@@ -673,6 +673,13 @@ for arguments in "check catoms_and_one.json" "steps catoms_and_one.json" "next c
   expect_line err 'not connected: .*; the lattice is cubic, in face-centred it is connected'
 done
 
+# Two cubes that share an edge are catoms, unless somebody says that they are two pieces.
+json '"modules": [[0,0,0],[1,1,0]]' >edge.json
+expect_exit 65 check edge.json
+expect_line err 'in face-centred it is connected: --lattice catoms3D; if it is in pieces: --lattice cubic$'
+expect_exit 0 check edge.json --lattice cubic
+expect_line out '^  pieces      safe'
+
 # Pieces that stand are judged one by one, by check alone and by what knows of pieces.
 json '"modules": [[0,0,0],[0,0,1],[5,0,0],[5,0,1],[6,0,1],[7,0,1]]' >pieces.json
 expect_exit 1 check pieces.json --json pieces_report.json --csv pieces.csv --svg pieces.svg

@@ -128,6 +128,7 @@ base::Result<ReadDocument> read_document(std::string_view text, const ReadOption
   }
   ReadDocument document = std::move(read).value();
   document.document.may_be_in_pieces = options.may_be_in_pieces;
+  document.document.is_lattice_chosen = options.lattice.has_value();
   return document;
 }
 

@@ -337,7 +337,8 @@ base::Error with_other_lattice(base::Error error, const Document& document) {
     return error;
   }
   const auto other = std::ranges::find_if(kNamedLattices, [&](const NamedLattice& row) {
-    return row.lattice != document.extension.lattice && is_connected(cells, row.lattice);
+    return !document.is_lattice_chosen && row.lattice != document.extension.lattice &&
+           is_connected(cells, row.lattice);
   });
   if (other != kNamedLattices.end()) {
     const auto* const modules =
@@ -494,11 +495,14 @@ base::Result<model::Robot> make_robot(const Document& document, int thread_count
   if (!robot) {
     return with_other_lattice(robot.error(), document);
   }
-  if (!robot.value().pieces().empty()) {
+  if (!robot.value().pieces().empty() && !document.is_lattice_chosen) {
     spec.may_be_in_pieces = false;
     const auto whole = model::Robot::create(spec, thread_count);
     if (!whole && with_other_lattice(whole.error(), document).message != whole.error().message) {
-      return with_other_lattice(whole.error(), document);
+      base::Error error = with_other_lattice(whole.error(), document);
+      error.message += fmt::format("; if it is in pieces: --lattice {}",
+                                   lattice_name(document.extension.lattice));
+      return error;
     }
   }
   return robot;

@@ -75,6 +75,9 @@ struct Document {
   /// Whether make_robot() takes modules that are in several pieces, each of which something holds;
   /// no file says it.
   bool may_be_in_pieces = false;
+  /// Whether an option says the lattice; then pieces are not taken for a robot of another one, or
+  /// of other units.
+  bool is_lattice_chosen = false;
 
   // VisibleSim's own, without meaning for mechanics.
   Attributes parameters;         ///< Of <parameters>: nofIterations, preconditioner, globalBeta...
@@ -239,7 +242,8 @@ base::Error with_other_lattice(base::Error error, const Document& document);
 
 /// Makes the robot with the first step; threads are those of model::Robot::create. Errors: those of
 /// make_spec(), and those of model::Robot::create with_other_lattice(). Pieces of a robot that
-/// another lattice would connect, or other units, are an error too.
+/// another lattice would connect, or other units, are an error too, unless an option says which
+/// lattice it is.
 base::Result<model::Robot> make_robot(const Document& document, int thread_count = 0);
 
 }  // namespace holdfast::io
