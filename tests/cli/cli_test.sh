@@ -673,10 +673,10 @@ for arguments in "check catoms_and_one.json" "steps catoms_and_one.json" "next c
   expect_line err 'not connected: .*; the lattice is cubic, in face-centred it is connected'
 done
 
-# Two cubes that share an edge are catoms, unless somebody says that they are two pieces.
-json '"modules": [[0,0,0],[1,1,0]]' >edge.json
+# Two cubes that share an edge may be prisms, unless somebody says that they are two pieces.
+json '"modules": [[0,1,0],[1,0,0]]' >edge.json
 expect_exit 65 check edge.json
-expect_line err 'in face-centred it is connected: --lattice catoms3D; if it is in pieces: --lattice cubic$'
+expect_line err 'it is connected: --lattice hexanodes; if it is in pieces: --lattice cubic$'
 expect_exit 0 check edge.json --lattice cubic
 expect_line out '^  pieces      safe'
 
