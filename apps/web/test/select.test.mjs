@@ -319,3 +319,37 @@ test('beside a stage nothing of the robot that is built is selected', async () =
   assert.ok((await frames()) > 0);
   assert.deepEqual(page.faults, []);
 });
+
+test('where a file lists what is joined, a module that is attached is joined as its ghost was, and goes without a trace', async () => {
+  const page = await openPage(browser);
+  const pairs = [[[0, 0, 0], [0, 0, 1]], [[0, 0, 1], [0, 0, 2]], [[0, 0, 2], [1, 0, 2]], [[1, 0, 2], [1, 0, 1]]];
+  const file = {
+    joined: 'listed', modules: [{ cell: [0, 0, 0], fixed: true }, [0, 0, 1], [0, 0, 2], [1, 0, 2], [1, 0, 1]],
+    connections: pairs.map((between) => ({ between })),
+  };
+  await open(page, 'listed', file);
+  const listed = () => page.evaluate(() => globalThis.holdfast.bench.robot.surroundings.connections);
+  const first = await listed();
+  // Above the corner, and then in a row and a half beside it: 1 and 2 neighbours that are there.
+  for (const cells of [[[1, 0, 3]], [[0, 0, 3]], [[2, 0, 3], [2, 0, 2]]]) {
+    const ratio = await page.evaluate(async (list) => {
+      const { app, bench } = globalThis.holdfast;
+      const trials = await app.whereNext.places.client.tryPlaces(bench.robot.toData().data, Int32Array.from(list.flat()), 0);
+      bench.edit('attach', list, 0);
+      return list.length === 1 ? trials[0].ratio : undefined;
+    }, cells);
+    await settled(page);
+    const { found, pieces } = await page.evaluate(() => {
+      const { answer } = globalThis.holdfast.app.finding;
+      return { found: answer.load_ratio_max, pieces: answer.pieces?.length ?? 0 };
+    });
+    assert.equal(pieces, 0);
+    assert.ok(cells.length > 1 || Math.abs(ratio - found) < 1e-9, `${ratio} ${found}`);
+  }
+  const keys = (await listed()).map(({ between }) => between.map(String).sort().join(' ')).sort();
+  const expected = [...pairs, [[1, 0, 2], [1, 0, 3]], [[0, 0, 2], [0, 0, 3]], [[0, 0, 3], [1, 0, 3]], [[1, 0, 3], [2, 0, 3]], [[2, 0, 2], [2, 0, 3]], [[1, 0, 2], [2, 0, 2]]];
+  assert.deepEqual(keys, expected.map((pair) => pair.map(String).sort().join(' ')).sort());
+  await page.evaluate(() => globalThis.holdfast.bench.edit('remove', [[1, 0, 3], [0, 0, 3], [2, 0, 3], [2, 0, 2]], undefined));
+  assert.deepEqual(await listed(), first);
+  assert.deepEqual(page.faults, []);
+});

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Cell, Role } from './cell';
 import { EditedRobot, type CellChange, type Settings } from './edited_robot';
-import { withoutModules } from './surroundings';
+import { withoutModules, type Surroundings } from './surroundings';
+import { withJoined } from './together';
 
 /** What was selected before a step and, if it selected something itself, after it. */
 interface Choice {
@@ -63,11 +64,22 @@ export class History {
     if (emptied.length > 0) {
       after.surroundings = withoutModules(after.surroundings, emptied.map(({ cell }) => cell));
     }
+    if (after.surroundings.joined === 'listed') {
+      after.surroundings = this.withJoined(after.surroundings, changes, settings.surroundings !== undefined);
+    }
     const isOther = (Object.keys(before) as (keyof Settings)[]).some((key) => !isSame(before[key], after[key]));
     if (changes.length > 0 || isOther) {
       this.do({ label, what: changes.length > 0 ? 'cells' : 'settings', changes, before, after });
     }
     return changes.length > 0 || isOther;
+  }
+
+  /** Where a file lists what is joined a module that comes is joined to all its neighbours, as the ghost was. */
+  private withJoined(surroundings: Surroundings, changes: readonly CellChange[], areTheirsNamed: boolean): Surroundings {
+    const added = changes.filter(({ before }) => before === undefined).map(({ cell }) => cell);
+    const roles = new Map(changes.map(({ cell, after }) => [String(cell), after]));
+    const has = (cell: Cell) => (roles.has(String(cell)) ? roles.get(String(cell)) !== undefined : this.robot.has(cell));
+    return withJoined(surroundings, added, this.robot.lattice, has, areTheirsNamed);
   }
 
   /** Gives the robot another material, another ground, other surroundings. */

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { cellText, equal, type Cell } from './cell';
 import type { LatticeName } from './lattice';
+import { bodyWithout, togetherMoved } from './together';
 import { digits, t } from '../texts';
 
 /**
@@ -68,9 +69,11 @@ export interface Surroundings {
   connections?: readonly OwnConnection[];
   bodies?: readonly (readonly BodyPart[])[];
   steps?: readonly StepEntry[];
+  /** Which neighbours are connected: all but the open ones, or those alone that `connections` lists. */
+  joined?: 'all' | 'listed';
   /**
    * Where somebody states that the elastic modulus is what it is by default; any other is stated anyway. Lengths of
-   * modules along x, y and z where they differ, as multiples of the least, which is the material's.
+   * modules along x, y and z where they differ: their ratios, as the least is the pitch of the robot's material.
    */
   material?: { elastic_modulus_mpa?: number; pitch_mm?: Vector };
 }
@@ -195,62 +198,6 @@ export function withoutModules(surroundings: Surroundings, cells: readonly Cell[
     connections: connections?.filter(({ between }) => !between.some((cell) => gone.has(String(cell)))),
     bodies: bodies?.flatMap((body) => bodyWithout(body, gone)),
   });
-}
-
-/** Cells of a rigid piece; undefined where its parts are written in a way that the page does not know. */
-function cellsOf(body: readonly BodyPart[]): Cell[] | undefined {
-  const cells: Cell[] = [];
-  for (const part of body) {
-    const [from, to] = Array.isArray(part) ? [part as Cell, part as Cell] : [(part as Obstacle).from, (part as Obstacle).to];
-    if (!from || !to) {
-      return undefined;
-    }
-    for (let x = from[0]; x <= to[0]; ++x) {
-      for (let y = from[1]; y <= to[1]; ++y) {
-        for (let z = from[2]; z <= to[2]; ++z) {
-          cells.push([x, y, z]);
-        }
-      }
-    }
-  }
-  return cells;
-}
-
-/** What is left of a rigid piece: one cell alone is none. */
-function bodyWithout(body: readonly BodyPart[], gone: ReadonlySet<string>): (readonly BodyPart[])[] {
-  const cells = cellsOf(body);
-  const left = cells?.filter((cell) => !gone.has(String(cell)));
-  return !cells || !left || left.length === cells.length ? [body] : left.length > 1 ? [left] : [];
-}
-
-/** Where modules go, by the text of their cell. */
-type Targets = ReadonlyMap<string, Cell>;
-
-/** The pair where both modules went; undefined if one of them stays, as they part then. */
-function pairMoved(pair: Pair, targets: Targets): Pair | undefined {
-  const [a, b] = pair.map((cell) => targets.get(String(cell)));
-  return a && b && [a, b];
-}
-
-/** What names several modules goes with them where all of them go; else those that go leave it. */
-function togetherMoved({ open, connections, bodies }: Surroundings, targets: Targets, isCopied: boolean): Surroundings {
-  const gone = new Set(isCopied ? [] : targets.keys());
-  const stays = (pair: Pair) => !pair.some((cell) => gone.has(String(cell)));
-  const bodyMoved = (body: readonly BodyPart[]) => {
-    const to = cellsOf(body)?.map((cell) => targets.get(String(cell)));
-    return to?.every((cell) => cell !== undefined) ? [to as Cell[]] : [];
-  };
-  return {
-    open: open && [...open.filter(stays), ...open.flatMap((pair) => [pairMoved(pair, targets)].filter((one) => one !== undefined))],
-    connections: connections && [
-      ...connections.filter(({ between }) => stays(between)),
-      ...connections.flatMap((one) => {
-        const between = pairMoved(one.between, targets);
-        return between ? [{ ...one, between }] : [];
-      }),
-    ],
-    bodies: bodies && [...bodies.flatMap((body) => bodyWithout(body, gone)), ...bodies.flatMap(bodyMoved)],
-  };
 }
 
 /** What modules have of their own goes with them to other cells, or is there twice if they are copied. */
